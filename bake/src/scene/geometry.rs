@@ -1,0 +1,85 @@
+//! Every triangle of every instance, in bake space, in one array.
+//!
+//! This array is the one truth about where surfaces are: rays are traced against it, texels are sampled on it, and
+//! frames are drawn from it. Positions are computed once, in `f64`, and rounded once, so a point computed on a triangle
+//! lies on that same triangle for the tracer.
+
+use super::{Alpha, Scene};
+use glam::{DVec3, Vec3};
+
+/// Flattened triangles of a scene, in the order of its instances.
+#[derive(Debug, Clone)]
+pub struct Geometry {
+    /// Corners in bake space, in the mesh's own order (a mirrored instance keeps it; see [`Geometry::normal`]).
+    pub triangles: Vec<[Vec3; 3]>,
+    /// For each instance, the index of its first triangle; one more entry at the end.
+    pub first_triangle: Vec<u32>,
+    /// For each triangle, its instance.
+    pub instance: Vec<u32>,
+    /// For each instance, +1 or -1: what turns the corners' cross product to the front.
+    front_sign: Vec<f64>,
+}
+
+/// A triangle found by its index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SurfaceTriangle {
+    /// Index in [`Scene::instances`].
+    pub instance: usize,
+    /// Index of the triangle within the instance's mesh.
+    pub mesh_triangle: usize,
+}
+
+impl Geometry {
+    /// Places every instance. Surfaces that are [`Alpha::Air`] keep their slots, so that indices stay aligned with the
+    /// scene, but see [`Geometry::is_solid`].
+    pub fn new(scene: &Scene) -> Self {
+        let count = scene.triangle_count();
+        let mut geometry = Self {
+            triangles: Vec::with_capacity(count),
+            first_triangle: Vec::with_capacity(scene.instances.len() + 1),
+            instance: Vec::with_capacity(count),
+            front_sign: Vec::with_capacity(scene.instances.len()),
+        };
+        for (index, instance) in scene.instances.iter().enumerate() {
+            geometry.first_triangle.push(geometry.triangles.len() as u32);
+            geometry.front_sign.push(if instance.is_mirrored { -1.0 } else { 1.0 });
+            let mesh = &scene.meshes[instance.mesh];
+            let corners: Vec<Vec3> = mesh
+                .positions
+                .iter()
+                .map(|p| instance.bake_from_object.transform_point3(p.as_dvec3()).as_vec3())
+                .collect();
+            for triangle in mesh.indices.chunks_exact(3) {
+                geometry.triangles.push([0, 1, 2].map(|k| corners[triangle[k] as usize]));
+                geometry.instance.push(index as u32);
+            }
+        }
+        geometry.first_triangle.push(geometry.triangles.len() as u32);
+        geometry
+    }
+
+    /// Which instance, and which of its triangles, a flat index means.
+    pub fn surface(&self, triangle: usize) -> SurfaceTriangle {
+        let instance = self.instance[triangle] as usize;
+        SurfaceTriangle { instance, mesh_triangle: triangle - self.first_triangle[instance] as usize }
+    }
+
+    /// The triangle's front normal, unit length, or zero where its corners coincide after rounding.
+    pub fn normal(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].map(|v| v.as_dvec3());
+        let sign = self.front_sign[self.instance[triangle] as usize];
+        ((b - a).cross(c - a) * sign).normalize_or_zero()
+    }
+
+    /// The point with barycentric weights `(1 - u - v, u, v)`, in bake space.
+    pub fn point(&self, triangle: usize, [u, v]: [f64; 2]) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].map(|p| p.as_dvec3());
+        a * (1.0 - u - v) + b * u + c * v
+    }
+
+    /// Whether the triangle blocks light at all (its material is not air, its corners do not coincide).
+    pub fn is_solid(&self, scene: &Scene, triangle: usize) -> bool {
+        let instance = self.instance[triangle] as usize;
+        scene.material(instance).alpha != Alpha::Air && self.normal(triangle) != DVec3::ZERO
+    }
+}

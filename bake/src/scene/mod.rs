@@ -1,0 +1,237 @@
+//! A static scene, as the baker needs it: every drawn primitive under every node that draws it.
+//!
+//! Two spaces appear here and nowhere are they mixed:
+//!
+//! * **world**: glTF's own. Metres, right-handed, +Y up, north is -Z and east is +X. Coordinates may be huge (a city in
+//!   map coordinates), so world positions are `f64`.
+//! * **bake**: world less [`Scene::centre_m`]. What is traced, sampled and drawn, in `f32` once the `f64` matrices have
+//!   been multiplied.
+
+use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+
+mod geometry;
+
+pub use geometry::{Geometry, SurfaceTriangle};
+
+/// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
+///
+/// Guarantees, made by [`load`] and relied on by everything downstream:
+/// * `indices` are triples below `positions.len()`; optional attributes have one entry a position;
+/// * `material`, `image`, `mesh`, `node` indices are in range; `materials` is never empty;
+/// * every position is finite in object space and in bake space; every instance matrix is invertible;
+/// * no triangle repeats an index, has zero area, or has a non-finite corner: those were dropped and counted.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Which file this came from.
+    pub source: Source,
+    /// The nodes of the scene that is drawn, parents before children.
+    pub nodes: Vec<Node>,
+    /// Drawn primitives, each once however many nodes draw it.
+    pub meshes: Vec<Mesh>,
+    /// What is drawn where: one per (node, primitive).
+    pub instances: Vec<Instance>,
+    /// Materials; the last one is glTF's default material when some primitive names none.
+    pub materials: Vec<Material>,
+    /// Images that some material uses, decoded.
+    pub images: Vec<Image>,
+    /// Cameras under nodes, in node order.
+    pub cameras: Vec<Camera>,
+    /// Direction towards the sun, world space, unit length: the first `KHR_lights_punctual` directional light.
+    pub sun_direction: Option<DVec3>,
+    /// World position of the origin of bake space.
+    pub centre_m: DVec3,
+    /// Half the size of the scene's bounding box along each axis, in metres.
+    pub half_extent_m: DVec3,
+    /// Triangles that were read and left out, by reason.
+    pub dropped: Dropped,
+    /// What a user should know about how the file was read: one sentence each, with the cause and what was done.
+    pub warnings: Vec<String>,
+}
+
+/// The file a scene was read from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// File name without its folder.
+    pub file_name: String,
+    /// SHA-256, in lower-case hex, over the file and then every external buffer and image it names, in file order.
+    pub sha256: String,
+}
+
+/// A node of the drawn scene. Kept so that `scene.glb` has the hierarchy and the names that the artist gave.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// Name, if the file gives one.
+    pub name: Option<String>,
+    /// Index of the parent in [`Scene::nodes`]; always smaller than the node's own.
+    pub parent: Option<usize>,
+    /// The node's own transform.
+    pub parent_from_node: DMat4,
+    /// Product of all transforms up to the root.
+    pub world_from_node: DMat4,
+}
+
+/// One glTF primitive, triangulated: one material and one vertex buffer, in object space.
+#[derive(Debug, Clone, Default)]
+pub struct Mesh {
+    /// Name of the glTF mesh, if any.
+    pub name: Option<String>,
+    /// Index of the glTF mesh in its file, and of the primitive within that mesh.
+    pub gltf: (usize, usize),
+    /// Object space, metres before the node's scale.
+    pub positions: Vec<Vec3>,
+    /// Unit shading normals, object space; absent: flat shading.
+    pub normals: Option<Vec<Vec3>>,
+    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them.
+    pub texcoords: [Option<Vec<Vec2>>; 2],
+    /// Linear RGBA vertex colour, multiplied with the material's base colour.
+    pub colors: Option<Vec<Vec4>>,
+    /// Three per triangle, counter-clockwise seen from the front.
+    pub indices: Vec<u32>,
+    /// Index in [`Scene::materials`].
+    pub material: usize,
+}
+
+impl Mesh {
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> usize {
+        self.indices.len() / 3
+    }
+}
+
+/// One mesh under one node.
+#[derive(Debug, Clone, Copy)]
+pub struct Instance {
+    /// Index in [`Scene::nodes`].
+    pub node: usize,
+    /// Index in [`Scene::meshes`].
+    pub mesh: usize,
+    /// Object space to bake space, composed in `f64` before the scene's centre was subtracted.
+    pub bake_from_object: DMat4,
+    /// True where the matrix mirrors (negative determinant): the winding turns over, the front stays the front.
+    pub is_mirrored: bool,
+}
+
+/// What a surface is made of, so far as sunbake draws and traces it.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// Name, if any.
+    pub name: Option<String>,
+    /// Linear RGB and alpha.
+    pub base_color: Vec4,
+    /// Multiplied with `base_color` (the texture is sRGB, its alpha linear).
+    pub base_color_texture: Option<TextureRef>,
+    /// Linear RGB, with `KHR_materials_emissive_strength` multiplied in.
+    pub emissive: Vec3,
+    /// How alpha is used.
+    pub alpha: Alpha,
+    /// Whether both sides are drawn, and can be lit.
+    pub is_double_sided: bool,
+    /// `KHR_materials_unlit`: drawn in its base colour.
+    pub is_unlit: bool,
+}
+
+/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Cut`] at one half: what is at least half
+/// opaque casts and shows, what is less does neither (see ARCHITECTURE, "Blended surfaces").
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Alpha {
+    /// Alpha is ignored.
+    Opaque,
+    /// Points whose alpha is below the cutoff are holes: to the eye and to light.
+    Cut {
+        /// Linear alpha at and above which a point is solid.
+        cutoff: f32,
+    },
+    /// Nothing of the surface reaches the cutoff: it is left out of drawing, tracing and baking.
+    Air,
+}
+
+/// A texture as a material uses it.
+#[derive(Debug, Clone, Copy)]
+pub struct TextureRef {
+    /// Index in [`Scene::images`].
+    pub image: usize,
+    /// 0 or 1: which of [`Mesh::texcoords`].
+    pub texcoord: usize,
+    /// `KHR_texture_transform`: image coordinates from texture coordinates (homogeneous, column-major).
+    pub image_from_texcoord: Mat3,
+    /// How coordinates outside [0, 1] are brought back, for u and v.
+    pub wrap: [Wrap; 2],
+}
+
+/// glTF's wrapping modes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wrap {
+    /// Tile.
+    Repeat,
+    /// Tile, every second one mirrored.
+    Mirror,
+    /// The border's texel goes on for ever.
+    Clamp,
+}
+
+/// A decoded image. Rows run from the top, as in the file.
+#[derive(Debug, Clone)]
+pub struct Image {
+    /// Name or URI, for messages.
+    pub name: String,
+    /// Width in texels.
+    pub width: u32,
+    /// Height in texels.
+    pub height: u32,
+    /// RGBA, 8 bits a channel, `width * height` of them. Colour as stored (sRGB).
+    pub rgba: Vec<[u8; 4]>,
+    /// The bytes as they stood in the file (PNG or JPEG), for writing the scene again without loss.
+    pub encoded: Vec<u8>,
+    /// `image/png` or `image/jpeg`.
+    pub mime_type: &'static str,
+}
+
+/// A perspective camera. (Orthographic ones are left out with a warning.)
+#[derive(Debug, Clone)]
+pub struct Camera {
+    /// Name of the camera or, failing that, of its node.
+    pub name: Option<String>,
+    /// Index in [`Scene::nodes`].
+    pub node: usize,
+    /// Bake space from camera space (looking down -Z, +Y up), rigid.
+    pub bake_from_camera: DMat4,
+    /// Vertical field of view in radians.
+    pub fov_y_rad: f64,
+}
+
+/// Triangles left out, by reason.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// Two corners share an index.
+    pub repeated_index: u64,
+    /// The corners lie on one line, exactly or as nearly as `f32` can tell.
+    pub zero_area: u64,
+    /// A corner is NaN or infinite.
+    pub non_finite: u64,
+}
+
+impl Dropped {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.repeated_index + self.zero_area + self.non_finite
+    }
+}
+
+impl Scene {
+    /// Number of triangles drawn, counting every instance.
+    pub fn triangle_count(&self) -> usize {
+        self.instances.iter().map(|i| self.meshes[i.mesh].triangle_count()).sum()
+    }
+
+    /// Whether any light-blocking surface has holes cut by alpha, so that rays must sample textures.
+    pub fn has_alpha_cut(&self) -> bool {
+        self.instances
+            .iter()
+            .any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
+    }
+
+    /// The material of an instance.
+    pub fn material(&self, instance: usize) -> &Material {
+        &self.materials[self.meshes[self.instances[instance].mesh].material]
+    }
+}

@@ -1,0 +1,57 @@
+//! Sorted, disjoint intervals of path time: the answer to "when does this point see the sun?".
+
+/// Lit intervals of one point.
+///
+/// Guarantees: every interval lies in [0, 1] and has positive length; intervals ascend and do not touch.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Intervals(Vec<[f64; 2]>);
+
+impl Intervals {
+    /// Lit the whole path.
+    pub fn always() -> Self {
+        Self(vec![[0.0, 1.0]])
+    }
+
+    /// Never lit.
+    pub fn never() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Sorts, clips to [0, 1], drops what is empty (or NaN) and joins what overlaps or touches.
+    pub fn from_unsorted(mut raw: Vec<[f64; 2]>) -> Self {
+        for interval in &mut raw {
+            *interval = interval.map(|t| t.clamp(0.0, 1.0));
+        }
+        raw.retain(|[start, end]| start < end);
+        raw.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut joined: Vec<[f64; 2]> = Vec::with_capacity(raw.len());
+        for [start, end] in raw {
+            match joined.last_mut() {
+                Some(last) if start <= last[1] => last[1] = last[1].max(end),
+                _ => joined.push([start, end]),
+            }
+        }
+        Self(joined)
+    }
+
+    /// The intervals.
+    pub fn as_slice(&self) -> &[[f64; 2]] {
+        &self.0
+    }
+
+    /// Total lit length, in [0, 1].
+    pub fn lit_length(&self) -> f64 {
+        self.0.iter().map(|[start, end]| end - start).sum()
+    }
+
+    /// Whether the sun is seen at `t` (ends count as lit).
+    pub fn contains(&self, t: f64) -> bool {
+        self.0.iter().any(|&[start, end]| (start..=end).contains(&t))
+    }
+
+    /// What both have.
+    pub fn intersection(&self, other: &Self) -> Self {
+        let pairs = self.0.iter().flat_map(|a| other.0.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
+        Self::from_unsorted(pairs.collect())
+    }
+}
