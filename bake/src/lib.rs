@@ -10,6 +10,8 @@
 //! ```
 
 pub mod atlas;
+pub mod disk;
+pub mod maps;
 pub mod scene;
 pub mod sun;
 pub mod visibility;
