@@ -14,4 +14,7 @@ pub mod disk;
 pub mod maps;
 pub mod scene;
 pub mod sun;
+#[doc(hidden)]
+pub mod testing;
+pub mod trace;
 pub mod visibility;

@@ -100,21 +100,18 @@ fn trace_back(lit: &[[f64; 2]], cost: &[[f64; 2]], steps: &[Vec<[(Step, usize); 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::pseudo_random;
 
     /// Every way to store `lit` with at most `cap` intervals whose ends are ends of its own: the least error.
     fn least_error_by_trying_all(lit: &[[f64; 2]], cap: usize) -> f64 {
         let segment_count = 2 * lit.len() - 1;
-        let length =
-            |s: usize| if s % 2 == 0 { lit[s / 2][1] - lit[s / 2][0] } else { lit[s / 2 + 1][0] - lit[s / 2][1] };
+        let length = |s: usize| {
+            if s.is_multiple_of(2) { lit[s / 2][1] - lit[s / 2][0] } else { lit[s / 2 + 1][0] - lit[s / 2][1] }
+        };
         (0u32..1 << segment_count)
             .filter(|mask| (mask & !(mask << 1)).count_ones() as usize <= cap)
             .map(|mask| (0..segment_count).filter(|&s| (mask >> s & 1 == 1) != (s % 2 == 0)).map(length).sum())
             .fold(f64::INFINITY, f64::min)
-    }
-
-    fn pseudo_random(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1u64 << 53) as f64
     }
 
     #[test]

@@ -9,6 +9,7 @@
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 
+pub mod alpha;
 mod geometry;
 
 pub use geometry::{Geometry, SurfaceTriangle};
