@@ -225,9 +225,7 @@ impl Scene {
 
     /// Whether any light-blocking surface has holes cut by alpha, so that rays must sample textures.
     pub fn has_alpha_cut(&self) -> bool {
-        self.instances
-            .iter()
-            .any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
+        self.instances.iter().any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
     }
 
     /// The material of an instance.
