@@ -23,6 +23,10 @@ use super::path::{Day, PathError, SunPath};
 /// costs a query of the scene for every texel, and 0.01 degrees are 2.4 seconds of sun.
 pub const FIT_ENOUGH_DEG: f64 = 0.01;
 
+/// Shortest path, in minutes: a second, so that ascending times stay apart whatever is computed from them. Shorter
+/// daylight is polar night.
+const SHORTEST_MIN: f64 = 1.0 / 60.0;
+
 /// Which day, where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DayRequest {
@@ -74,7 +78,9 @@ pub enum DayError {
     #[error("north turned by {0} degrees is no direction: give a finite angle")]
     North(f64),
     /// Not clock times.
-    #[error("a window from minute {0} to minute {1} is not within a day: give minutes of local time in 0..=1440")]
+    #[error(
+        "no window runs from minute {0} to minute {1}: give minutes of local time in 0..=1440; it lasts a second at least"
+    )]
     Window(f64, f64),
     /// The sun is down all through the window.
     #[error(
@@ -144,10 +150,11 @@ fn check(request: &DayRequest) -> Result<f64, DayError> {
     if !request.north_deg.is_finite() {
         return Err(DayError::North(request.north_deg));
     }
-    if let Some([start, end]) = request.window
-        && ![start, end].iter().all(|minute| (0.0..=DAY_MIN).contains(minute))
-    {
-        return Err(DayError::Window(start, end));
+    if let Some(window @ [start, end]) = request.window {
+        let within_day = window.iter().all(|minute| (0.0..=DAY_MIN).contains(minute));
+        if !within_day || length(&unrolled(window)) < SHORTEST_MIN {
+            return Err(DayError::Window(start, end));
+        }
     }
     let utc_offset_h = request.utc_offset_h.unwrap_or_else(|| (request.longitude_deg / 15.0).round());
     if !(-12.0..=14.0).contains(&utc_offset_h) {
@@ -161,15 +168,19 @@ fn unrolled([start, end]: [f64; 2]) -> [f64; 2] {
     [start, if end <= start { end + DAY_MIN } else { end }]
 }
 
+fn length([start, end]: &[f64; 2]) -> f64 {
+    end - start
+}
+
 /// Sunrise and sunset of the date in minutes after local midnight, by the rules on top of this file.
 fn daylight_of_date(ephemeris: &Ephemeris) -> Result<Option<[f64; 2]>, EphemerisError> {
     let transit = ephemeris.transit_min()?;
     let around = [transit - 0.5 * DAY_MIN, transit + 0.5 * DAY_MIN];
-    let daylight = ephemeris.daylight(around)?;
+    let mut daylight = ephemeris.daylight(around)?;
     if daylight == [around] {
         return Ok(Some([0.0, DAY_MIN]));
     }
-    let length = |[rise, set]: &[f64; 2]| set - rise;
+    daylight.retain(|span| length(span) >= SHORTEST_MIN);
     let at_transit = daylight.iter().find(|[rise, set]| (*rise..=*set).contains(&transit));
     let longest = daylight.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
     Ok(at_transit.or(longest).copied())

@@ -1,7 +1,11 @@
 //! What the sun's paths are held to.
 
+mod dates_and_clocks_read_as_written;
 mod days_follow_the_ephemeris;
+mod days_follow_trigonometry;
 mod half_spaces_match_brute_force;
+mod keys_and_lights_make_paths;
+mod odd_days_are_ordinary_input;
 
 /// A small deterministic generator (Knuth's MMIX constants), so that a failure repeats.
 pub(super) struct Random(u64);
