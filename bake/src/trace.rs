@@ -36,8 +36,14 @@ pub struct Tracer {
     flat: Vec<u32>,
     cuts: Cuts,
     tracer_from_bake: f64,
+    /// How far shadow rays start before their origin, in tracer space: half of the least lift, so that a point exactly
+    /// on the edge where two walls meet is shaded by both, and by its own surface never.
+    run_up: f64,
     /// For each instance, how far off its surface shadow rays start.
     lift_m: Vec<f64>,
+    /// For each flat triangle, its middle.
+    centroid_m: Vec<Vec3>,
+    /// For each flat triangle, its instance.
     instance: Vec<u32>,
 }
 
@@ -83,6 +89,11 @@ impl Direction {
         self.unit
     }
 
+    /// For obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.
+    fn ray_from(&self, origin: DVec3) -> Ray {
+        Ray::new_inf(origin.as_vec3a(), self.unit.as_vec3a() + Vec3A::ZERO)
+    }
+
     /// Where a ray from `origin` meets a triangle, in front of the origin: distance and corner weights.
     #[inline]
     fn meet(&self, origin: DVec3, corners: &[Vec3; 3]) -> Option<(f64, [f64; 2])> {
@@ -122,13 +133,20 @@ impl Tracer {
         let corners = flat.iter().map(scaled).collect();
         let cuts = Cuts::new(scene, geometry, &flat);
         let lift_m = lifts_m(scene, geometry);
-        Self { bvh, corners, flat, cuts, tracer_from_bake, lift_m, instance: geometry.instance.clone() }
+        let run_up = 0.5 * tracer_from_bake * lift_m.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let centroid_m = geometry.triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+        let instance = geometry.instance.clone();
+        Self { bvh, corners, flat, cuts, tracer_from_bake, run_up, lift_m, centroid_m, instance }
     }
 
     /// Where a shadow ray from a point of a triangle should start: off the surface, along `side` (its unit normal, or
-    /// the opposite), by more than rounding moved its corners and less than anything one would model.
+    /// the opposite), by more than rounding moved its corners and less than anything one would model; and as far off
+    /// the triangle's edges, since a point exactly on one lies as much inside a room as outside.
     pub fn lift(&self, point_m: DVec3, side: DVec3, triangle: u32) -> DVec3 {
-        point_m + side * self.lift_m[self.instance[triangle as usize] as usize]
+        let triangle = triangle as usize;
+        let lift_m = self.lift_m[self.instance[triangle] as usize];
+        let inwards = self.centroid_m[triangle].as_dvec3() - point_m;
+        point_m + side * lift_m + inwards.clamp_length_max(lift_m)
     }
 
     /// Whether anything solid lies along the direction.
@@ -138,8 +156,8 @@ impl Tracer {
 
     /// Something solid along the direction, not always the nearest.
     pub fn occluder(&self, origin_m: DVec3, direction: &Direction) -> Option<Occluder> {
-        let origin = origin_m * self.tracer_from_bake;
-        let ray = Ray::new_inf(origin.as_vec3a(), direction.unit.as_vec3a());
+        let origin = self.shadow_start(origin_m, direction);
+        let ray = direction.ray_from(origin);
         let mut found = None;
         self.bvh.ray_traverse_miss(ray, |_, id| match self.meet(origin, direction, id) {
             Some(_) => {
@@ -154,7 +172,13 @@ impl Tracer {
     /// Whether one given triangle lies along the direction.
     #[inline]
     pub fn is_occluded_by(&self, occluder: Occluder, origin_m: DVec3, direction: &Direction) -> bool {
-        self.meet(origin_m * self.tracer_from_bake, direction, occluder.0 as usize).is_some()
+        self.meet(self.shadow_start(origin_m, direction), direction, occluder.0 as usize).is_some()
+    }
+
+    /// Where a shadow ray really starts, in tracer space.
+    #[inline]
+    fn shadow_start(&self, origin_m: DVec3, direction: &Direction) -> DVec3 {
+        origin_m * self.tracer_from_bake - direction.unit * self.run_up
     }
 
     /// The nearest surface along the direction for which `accept` (given its flat triangle index) holds.
@@ -165,7 +189,7 @@ impl Tracer {
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
         let origin = origin_m * self.tracer_from_bake;
-        let ray = Ray::new_inf(origin.as_vec3a(), direction.unit.as_vec3a());
+        let ray = direction.ray_from(origin);
         let mut nearest: Option<(usize, f64, [f64; 2])> = None;
         self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, id| {
             let Some((distance, barycentric)) = self.meet(origin, direction, id) else { return f32::INFINITY };
@@ -396,10 +420,12 @@ mod tests {
         let triangle = [Vec3::ZERO, Vec3::X, Vec3::Z];
         let tracer = traced(SceneBuilder::new().soup(&[triangle]));
         for unit in [DVec3::X, -DVec3::X, DVec3::Z, DVec3::new(1.0, 0.0, 1.0).normalize()] {
-            assert!(!tracer.is_occluded(DVec3::new(-1.0, 0.0, 0.2), &Direction::new(unit)));
+            assert!(!tracer.is_occluded(DVec3::new(-1.5, 0.0, -0.3), &Direction::new(unit)));
         }
         for corner in triangle {
-            assert!(!tracer.is_occluded(corner.as_dvec3(), &Direction::new(DVec3::Y)));
+            let origin = tracer.lift(corner.as_dvec3() - DVec3::new(0.5, 0.0, 0.5), DVec3::Y, 0);
+            assert!(!tracer.is_occluded(origin, &Direction::new(DVec3::Y)));
+            assert!(tracer.is_occluded(origin, &Direction::new(-DVec3::Y)));
         }
     }
 
