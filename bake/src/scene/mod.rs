@@ -9,10 +9,30 @@
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 
+mod accessors;
 pub mod alpha;
+mod cameras;
+mod container;
+mod document;
+mod error;
 mod geometry;
+mod images;
+mod limits;
+mod load;
+mod materials;
+mod nodes;
+mod normals;
+mod pose;
+mod primitives;
+mod refuse;
+mod resources;
+mod triangles;
 
+pub use error::{ErrorClass, LoadError};
 pub use geometry::{Geometry, SurfaceTriangle};
+pub use limits::LoadLimits;
+pub use load::load;
+pub use materials::BLEND_CUTOFF;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
 ///
