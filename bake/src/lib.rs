@@ -10,6 +10,7 @@
 //! ```
 
 pub mod atlas;
+pub mod glb;
 pub mod scene;
 pub mod sun;
 pub mod visibility;

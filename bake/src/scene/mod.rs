@@ -9,9 +9,29 @@
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 
+mod accessors;
+mod cameras;
+mod container;
+mod document;
+mod error;
 mod geometry;
+mod images;
+mod limits;
+mod load;
+mod materials;
+mod nodes;
+mod normals;
+mod pose;
+mod primitives;
+mod refuse;
+mod resources;
+mod triangles;
 
+pub use error::{ErrorClass, LoadError};
 pub use geometry::{Geometry, SurfaceTriangle};
+pub use limits::LoadLimits;
+pub use load::load;
+pub use materials::BLEND_CUTOFF;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
 ///
@@ -225,9 +245,7 @@ impl Scene {
 
     /// Whether any light-blocking surface has holes cut by alpha, so that rays must sample textures.
     pub fn has_alpha_cut(&self) -> bool {
-        self.instances
-            .iter()
-            .any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
+        self.instances.iter().any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
     }
 
     /// The material of an instance.

@@ -1,0 +1,88 @@
+//! Writes `scene.glb`: the scene as any glTF viewer shows it, with the bake's own texture coordinates.
+//!
+//! What the file keeps of its source is what sunbake understands: the hierarchy with its names and full-precision
+//! matrices, one mesh per glTF mesh, vertices as they were, base colours with their images byte for byte, cameras. What
+//! it adds is `TEXCOORD_1`, the layout of each mesh; vertices on chart borders are doubled. `TEXCOORD_0` is whichever
+//! set the picture uses, since viewers expect sets to be numbered from 0 without a gap.
+//!
+//! Same scene, same bytes. Reading the file back gives the same nodes, instances and triangles in the same order.
+//!
+//! Based on: Khronos Group, *glTF 2.0 Specification*.
+
+mod binary;
+mod materials;
+mod meshes;
+mod nodes;
+
+use crate::{atlas::Layout, scene::Scene};
+use binary::Binary;
+use serde_json::{Map, Value, json};
+
+/// A scene in GLB's form, and where its instances stand in it.
+#[derive(Debug, Clone)]
+pub struct WrittenScene {
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// For each of [`Scene::instances`], its node and the index of its primitive in that node's mesh.
+    pub places: Vec<(usize, usize)>,
+}
+
+/// The scene is larger than GLB's 32-bit lengths can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("scene.glb would have {bytes} bytes, and the format ends at 4294967295; bake the scene in parts")]
+pub struct GlbTooLarge {
+    /// How large it would be.
+    pub bytes: u64,
+}
+
+/// Writes a scene with its layouts, one per [`Scene::meshes`].
+///
+/// # Errors
+///
+/// Where the file would have 4 GiB or more.
+pub fn write_glb(scene: &Scene, layouts: &[Layout]) -> Result<WrittenScene, GlbTooLarge> {
+    let mut binary = Binary::default();
+    let groups = meshes::Groups::new(scene);
+    let meshes = meshes::write(scene, layouts, &groups, &mut binary);
+    let materials = materials::write(scene, &mut binary);
+    let mut root = Map::new();
+    root.insert("asset".into(), json!({ "version": "2.0", "generator": GENERATOR }));
+    root.insert("scene".into(), json!(0));
+    root.insert("scenes".into(), json!([{ "nodes": nodes::roots(scene) }]));
+    let lists = [
+        ("nodes", nodes::write(scene, &groups)),
+        ("cameras", nodes::cameras(scene)),
+        ("meshes", meshes),
+        ("materials", materials.materials),
+        ("textures", materials.textures),
+        ("samplers", materials.samplers),
+        ("images", materials.images),
+        ("extensionsUsed", materials.extensions),
+        ("accessors", binary.accessors),
+        ("bufferViews", binary.views),
+        ("buffers", vec![json!({ "byteLength": binary.bytes.len() })]),
+    ];
+    root.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| (name.into(), list.into())));
+    let bytes = container(&Value::from(root).to_string(), &binary.bytes)?;
+    Ok(WrittenScene { bytes, places: groups.places })
+}
+
+const GENERATOR: &str = concat!("sunbake ", env!("CARGO_PKG_VERSION"));
+
+/// Header, JSON chunk padded with spaces, binary chunk padded with zeros.
+fn container(json: &str, binary: &[u8]) -> Result<Vec<u8>, GlbTooLarge> {
+    let padded = |length: usize| length.next_multiple_of(4);
+    let total = 12 + 8 + padded(json.len()) + 8 + padded(binary.len());
+    let length = u32::try_from(total).map_err(|_| GlbTooLarge { bytes: total as u64 })?;
+    let mut bytes = Vec::with_capacity(total);
+    bytes.extend(b"glTF");
+    bytes.extend(2u32.to_le_bytes());
+    bytes.extend(length.to_le_bytes());
+    for (kind, data, padding) in [(b"JSON", json.as_bytes(), b' '), (b"BIN\0", binary, 0)] {
+        bytes.extend((padded(data.len()) as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(data);
+        bytes.resize(bytes.len().next_multiple_of(4), padding);
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,246 @@
+//! Accessors: typed arrays in buffers, strided, normalised, sparse, or all zero.
+//!
+//! Based on: Khronos Group, *glTF 2.0 Specification*, sections 3.6.2.2 to 3.6.2.4. Every bound is checked here, against
+//! the bytes that exist rather than those that the file declares.
+
+use super::{
+    LoadError,
+    document::{self, Document, place},
+    limits::Budget,
+    resources::Buffers,
+};
+
+/// What is needed to read accessors.
+#[derive(Clone, Copy)]
+pub(super) struct Reader<'a> {
+    pub doc: &'a Document,
+    pub buffers: &'a Buffers<'a>,
+    pub budget: &'a Budget,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+/// Elements as they lie in a buffer: `count` of `size` bytes, `stride` bytes apart. All of them are inside `bytes`.
+struct Elements<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+    count: usize,
+}
+
+impl Component {
+    fn from_code(code: u64) -> Option<Self> {
+        Some(match code {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    fn width(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+
+    /// The value as it stands.
+    fn plain(self, b: &[u8]) -> f32 {
+        match (self, b) {
+            (Self::I8, &[a, ..]) => f32::from(a as i8),
+            (Self::U8, &[a, ..]) => f32::from(a),
+            (Self::I16, &[a, b, ..]) => f32::from(i16::from_le_bytes([a, b])),
+            (Self::U16, &[a, b, ..]) => f32::from(u16::from_le_bytes([a, b])),
+            (Self::U32, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]) as f32,
+            (Self::F32, &[a, b, c, d, ..]) => f32::from_le_bytes([a, b, c, d]),
+            _ => 0.0,
+        }
+    }
+
+    /// What a stored value is divided by when its accessor is normalised.
+    fn range(self) -> f32 {
+        match self {
+            Self::I8 => 127.0,
+            Self::U8 => 255.0,
+            Self::I16 => 32767.0,
+            Self::U16 => 65535.0,
+            Self::U32 => u32::MAX as f32,
+            Self::F32 => 1.0,
+        }
+    }
+
+    fn unsigned(self, b: &[u8]) -> u32 {
+        match (self, b) {
+            (Self::U8, &[a, ..]) => a.into(),
+            (Self::U16, &[a, b, ..]) => u16::from_le_bytes([a, b]).into(),
+            (Self::U32, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]),
+            _ => 0,
+        }
+    }
+}
+
+fn lanes_of(shape: &str) -> Option<usize> {
+    Some(match shape {
+        "SCALAR" => 1,
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" | "MAT2" => 4,
+        "MAT3" => 9,
+        "MAT4" => 16,
+        _ => return None,
+    })
+}
+
+impl<'a> Reader<'a> {
+    /// Numbers in groups of `N`, normalised integers brought to their range.
+    pub fn floats<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, LoadError> {
+        let (accessor, component) = self.typed::<N>(index)?;
+        if !accessor.normalized || component == Component::F32 {
+            return self.values(index, &accessor, component, |b| component.plain(b));
+        }
+        let range = component.range();
+        self.values(index, &accessor, component, |b| (component.plain(b) / range).max(-1.0))
+    }
+
+    /// Unsigned integers in groups of `N`.
+    pub fn integers<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, LoadError> {
+        let (accessor, component) = self.typed::<N>(index)?;
+        match component {
+            Component::U8 | Component::U16 | Component::U32 => {
+                self.values(index, &accessor, component, |b| component.unsigned(b))
+            }
+            _ => Err(wrong(index, format!("component type {} is not an unsigned integer", accessor.component_type))),
+        }
+    }
+
+    /// How many numbers an element has.
+    pub fn lanes(&self, index: usize) -> Result<usize, LoadError> {
+        let accessor: document::Accessor = self.doc.get(index)?;
+        lanes_of(&accessor.shape).ok_or_else(|| wrong(index, format!("unknown type {}", accessor.shape)))
+    }
+
+    /// Whether the accessor has bytes of its own, rather than being all zero.
+    pub fn has_data(&self, index: usize) -> bool {
+        let accessor = self.doc.get::<document::Accessor>(index);
+        accessor.is_ok_and(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
+    }
+
+    fn typed<const N: usize>(&self, index: usize) -> Result<(document::Accessor, Component), LoadError> {
+        let accessor: document::Accessor = self.doc.get(index)?;
+        let component = component(index, accessor.component_type)?;
+        if accessor.count >= u64::from(u32::MAX) {
+            self.budget.take(accessor.count, 4 * N as u64, || place::<document::Accessor>(index))?;
+            return Err(wrong(index, format!("it has {} elements, more than an index can name", accessor.count)));
+        }
+        match self.lanes(index)? == N {
+            true => Ok((accessor, component)),
+            false => Err(wrong(index, format!("type {} where {N} numbers an element are needed", accessor.shape))),
+        }
+    }
+
+    fn values<T: Copy + Default, const N: usize>(
+        &self,
+        index: usize,
+        accessor: &document::Accessor,
+        component: Component,
+        convert: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<[T; N]>, LoadError> {
+        let what = || format!("{} with {} elements", place::<document::Accessor>(index), accessor.count);
+        let (width, size) = (component.width(), component.width() * N);
+        let take = |e: &Elements| e.iter().map(|b| element(b, width, &convert)).collect();
+        let mut values: Vec<[T; N]> = match accessor.buffer_view {
+            Some(view) => {
+                let elements = self.elements(index, view, accessor.byte_offset, accessor.count, size)?;
+                self.budget.take(accessor.count, size_of::<[T; N]>() as u64, what)?;
+                take(&elements)
+            }
+            None => {
+                self.budget.take(accessor.count, size_of::<[T; N]>() as u64, what)?;
+                vec![[T::default(); N]; accessor.count as usize]
+            }
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let elements =
+                self.elements(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size)?;
+            for (at, bytes) in self.sparse_indices(index, sparse)?.zip(elements.iter()) {
+                let slot =
+                    values.get_mut(at).ok_or_else(|| wrong(index, format!("its sparse index {at} is too large")))?;
+                *slot = element(bytes, width, &convert);
+            }
+        }
+        Ok(values)
+    }
+
+    fn sparse_indices(
+        &self,
+        index: usize,
+        sparse: &document::Sparse,
+    ) -> Result<impl Iterator<Item = usize> + 'a, LoadError> {
+        let indices = &sparse.indices;
+        let component = component(index, indices.component_type)?;
+        let elements =
+            self.elements(index, indices.buffer_view, indices.byte_offset, sparse.count, component.width())?;
+        Ok(elements.into_iter().map(move |b| component.unsigned(b) as usize))
+    }
+
+    /// Bytes of `count` elements, all of them inside the view.
+    fn elements(
+        &self,
+        index: usize,
+        view: usize,
+        offset: u64,
+        count: u64,
+        size: usize,
+    ) -> Result<Elements<'a>, LoadError> {
+        let (bytes, stride) = self.buffers.view(self.doc, view)?;
+        let stride = stride.filter(|&stride| stride > 0).unwrap_or(size as u64);
+        let needed = match count {
+            0 => 0,
+            _ => (count - 1).saturating_mul(stride).saturating_add(size as u64).saturating_add(offset),
+        };
+        if needed > bytes.len() as u64 {
+            let problem =
+                format!("its {count} elements need {needed} bytes of bufferViews[{view}], which has {}", bytes.len());
+            return Err(LoadError::structure(place::<document::Accessor>(index), problem));
+        }
+        let bytes = bytes.get(offset as usize..).unwrap_or(&[]);
+        Ok(Elements { bytes, stride: stride as usize, size, count: count as usize })
+    }
+}
+
+impl<'a> Elements<'a> {
+    fn iter(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        let (bytes, stride, size) = (self.bytes, self.stride, self.size);
+        (0..self.count).map(move |i| bytes.get(i * stride..i * stride + size).unwrap_or(&[]))
+    }
+
+    fn into_iter(self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        self.iter()
+    }
+}
+
+fn element<T: Copy + Default, const N: usize>(bytes: &[u8], width: usize, convert: &impl Fn(&[u8]) -> T) -> [T; N] {
+    let mut lanes = bytes.chunks_exact(width);
+    [(); N].map(|()| lanes.next().map(convert).unwrap_or_default())
+}
+
+fn component(index: usize, code: u64) -> Result<Component, LoadError> {
+    Component::from_code(code).ok_or_else(|| wrong(index, format!("unknown component type {code}")))
+}
+
+fn wrong(index: usize, problem: String) -> LoadError {
+    LoadError::structure(place::<document::Accessor>(index), problem)
+}

@@ -1,0 +1,137 @@
+//! The outer layer of a scene file: GLB chunks or bare JSON, told apart by their first bytes.
+//!
+//! Based on: Khronos Group, *glTF 2.0 Specification*, section 4 (GLB file format). More lenient than it in three ways
+//! that harm nobody: trailing bytes and unknown chunks are passed over, and a byte order mark is skipped.
+
+use super::{LoadError, limits::Budget};
+use serde_json::Value;
+use std::{fs::File, io::Read, path::Path};
+
+/// The parts of a scene file.
+pub(super) struct Container<'a> {
+    /// The parsed JSON.
+    pub json: Value,
+    /// The binary chunk, if any.
+    pub binary: Option<&'a [u8]>,
+}
+
+/// Reads a whole regular file, if it fits into the budget.
+pub(super) fn read_file(path: &Path, budget: &Budget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
+    let fail = |cause: std::io::Error| LoadError::read(path, cause, advice);
+    let meta = std::fs::metadata(path).map_err(fail)?;
+    if !meta.is_file() {
+        let cause = if meta.is_dir() { "it is a folder" } else { "it is not a regular file" };
+        return Err(LoadError::read(path, cause, advice));
+    }
+    budget.take(meta.len(), 1, || format!("{}", path.display()))?;
+    let mut bytes = Vec::new();
+    File::open(path).map_err(fail)?.take(meta.len()).read_to_end(&mut bytes).map_err(fail)?;
+    Ok(bytes)
+}
+
+impl<'a> Container<'a> {
+    /// Splits the bytes of a file.
+    pub fn parse(path: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Self, LoadError> {
+        let (json, binary) = match bytes {
+            [] => return Err(not_gltf(path, "it is empty")),
+            [b'g', b'l', b'T', b'F', rest @ ..] => split_chunks(path, rest)?,
+            _ => (bytes, None),
+        };
+        let json = json.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(json);
+        budget.take(json.len() as u64, JSON_BYTES_PER_CHARACTER, || "its JSON".into())?;
+        let json = parse_json(path, json)?;
+        check_version(path, &json)?;
+        Ok(Self { json, binary })
+    }
+}
+
+/// A parsed value takes several times its text: `0,` is two characters and 32 bytes.
+const JSON_BYTES_PER_CHARACTER: u64 = 16;
+
+fn not_gltf(path: &Path, cause: impl Into<String>) -> LoadError {
+    LoadError::NotGltf { path: path.to_owned(), cause: cause.into() }
+}
+
+fn truncated(path: &Path, cause: impl Into<String>) -> LoadError {
+    LoadError::Truncated { path: path.to_owned(), cause: cause.into() }
+}
+
+/// Takes a little-endian word off the front.
+fn word<'a>(bytes: &'a [u8]) -> Option<(u32, &'a [u8])> {
+    let (head, tail): (&'a [u8; 4], &'a [u8]) = bytes.split_first_chunk()?;
+    Some((u32::from_le_bytes(*head), tail))
+}
+
+/// `rest` is what follows the magic.
+fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), LoadError> {
+    let cut = || truncated(path, format!("it ends within its header, after {} bytes", rest.len() + 4));
+    let (version, rest) = word(rest).ok_or_else(cut)?;
+    if version != 2 {
+        return Err(wrong_version(path, version.to_string()));
+    }
+    let (length, mut rest) = word(rest).ok_or_else(cut)?;
+    let found = rest.len() as u64 + 12;
+    if u64::from(length) > found {
+        return Err(truncated(path, format!("its header declares {length} bytes and there are {found}")));
+    }
+    let (kind, json) = chunk(path, &mut rest)?.ok_or_else(|| truncated(path, "it has a header and no chunks"))?;
+    if kind != *b"JSON" {
+        return Err(truncated(path, format!("its first chunk is {kind:?} instead of JSON")));
+    }
+    while let Some((kind, data)) = chunk(path, &mut rest)? {
+        if kind == *b"BIN\0" {
+            return Ok((json, Some(data)));
+        }
+    }
+    Ok((json, None))
+}
+
+/// Takes the next chunk off the front: its kind and its data. Fewer than eight bytes are padding.
+fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<([u8; 4], &'a [u8])>, LoadError> {
+    let Some((length, after)) = word(rest) else { return Ok(None) };
+    let Some((kind, after)) = word(after) else { return Ok(None) };
+    let Some((data, tail)) = after.split_at_checked(length as usize) else {
+        return Err(truncated(path, format!("a chunk declares {length} bytes and {} follow", after.len())));
+    };
+    *rest = tail;
+    Ok(Some((kind.to_le_bytes(), data)))
+}
+
+fn parse_json(path: &Path, json: &[u8]) -> Result<Value, LoadError> {
+    // Exporters pad the chunk with spaces as they should, and some with zeros.
+    let json = json.trim_ascii();
+    let json = json.iter().rposition(|&b| b != 0).map_or(&[][..], |last| json.get(..=last).unwrap_or(json));
+    if json.first() != Some(&b'{') {
+        return Err(not_gltf(path, "it begins neither with the letters glTF nor with a JSON object"));
+    }
+    serde_json::from_slice(json).map_err(|error| LoadError::Json {
+        path: path.to_owned(),
+        line: error.line(),
+        column: error.column(),
+        cause: strip_position(&error.to_string()),
+    })
+}
+
+/// serde_json ends its messages with the position, which our message states already.
+pub(super) fn strip_position(message: &str) -> String {
+    message.split(" at line ").next().unwrap_or(message).to_owned()
+}
+
+fn wrong_version(path: &Path, version: String) -> LoadError {
+    let advice = match version.starts_with('1') {
+        true => "convert it: npx gltf-pipeline -i IN -o OUT.glb",
+        false => "export it as glTF 2.0",
+    };
+    LoadError::Version { path: path.to_owned(), version, advice }
+}
+
+/// A later minor version is read as 2.0 unless the file says that it must not be.
+fn check_version(path: &Path, json: &Value) -> Result<(), LoadError> {
+    let asset = json.get("asset");
+    let text = |key| asset.and_then(|asset| asset.get(key)).and_then(Value::as_str);
+    let newer = |version: &&str| !version.starts_with("2.");
+    match text("minVersion").filter(|&v| v != "2.0").or(text("version").filter(newer)) {
+        Some(version) => Err(wrong_version(path, version.to_owned())),
+        None => Ok(()),
+    }
+}

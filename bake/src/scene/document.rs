@@ -1,0 +1,266 @@
+//! The parts of glTF's JSON that a bake reads, and nothing else of it.
+//!
+//! An item is parsed when it is asked for, not before. So whatever is wrong with a file's animations, samplers or
+//! unused accessors cannot stop a bake, and what is wrong with something that is used is reported by its place. That is
+//! why the types of the `gltf` crate are not used here: they parse (and validate) all of a file or none of it, hold node
+//! matrices in `f32`, and index out of range when the validation is left out.
+
+use super::{LoadError, container::strip_position};
+use serde::{Deserialize, de::DeserializeOwned};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The JSON of a scene.
+pub(super) struct Document {
+    pub root: Value,
+}
+
+/// Something that lives in one of the lists at the top level.
+pub(super) trait Item: DeserializeOwned {
+    /// The list's name.
+    const LIST: &'static str;
+}
+
+/// `accessors[12]`, for messages.
+pub(super) fn place<T: Item>(index: usize) -> String {
+    format!("{}[{index}]", T::LIST)
+}
+
+impl Document {
+    /// Parses item `index` of its list.
+    pub fn get<T: Item>(&self, index: usize) -> Result<T, LoadError> {
+        let value = self.list(T::LIST).get(index).ok_or_else(|| {
+            let count = self.count::<T>();
+            LoadError::structure(place::<T>(index), format!("it is referred to, but there are only {count}"))
+        })?;
+        T::deserialize(value)
+            .map_err(|error| LoadError::structure(place::<T>(index), strip_position(&error.to_string())))
+    }
+
+    /// How many items there are.
+    pub fn count<T: Item>(&self) -> usize {
+        self.list(T::LIST).len()
+    }
+
+    fn list(&self, name: &str) -> &[Value] {
+        self.root.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+    }
+
+    /// Strings of a list at the top level.
+    pub fn strings(&self, name: &str) -> impl Iterator<Item = &str> {
+        self.list(name).iter().filter_map(Value::as_str)
+    }
+}
+
+macro_rules! items {
+    ($($name:ident = $list:literal),* $(,)?) => { $(impl Item for $name { const LIST: &'static str = $list; })* };
+}
+
+items! {
+    Accessor = "accessors", Buffer = "buffers", BufferView = "bufferViews", Camera = "cameras", Image = "images",
+    Material = "materials", Mesh = "meshes", Node = "nodes", Sampler = "samplers", SceneRoots = "scenes",
+    Skin = "skins", Texture = "textures",
+}
+
+#[derive(Deserialize)]
+pub(super) struct SceneRoots {
+    pub nodes: Option<Vec<usize>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Node {
+    pub name: Option<String>,
+    pub children: Option<Vec<usize>>,
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+    pub mesh: Option<usize>,
+    pub skin: Option<usize>,
+    pub camera: Option<usize>,
+    pub weights: Option<Vec<f32>>,
+    pub extensions: Option<BTreeMap<String, Value>>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Mesh {
+    pub name: Option<String>,
+    pub primitives: Option<Vec<Primitive>>,
+    pub weights: Option<Vec<f32>>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Primitive {
+    #[serde(default)]
+    pub attributes: BTreeMap<String, usize>,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    pub mode: Option<u64>,
+    pub targets: Option<Vec<BTreeMap<String, usize>>>,
+    pub extensions: Option<BTreeMap<String, Value>>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub buffer_view: Option<usize>,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub component_type: u64,
+    pub count: u64,
+    #[serde(rename = "type")]
+    pub shape: String,
+    #[serde(default)]
+    pub normalized: bool,
+    pub sparse: Option<Sparse>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Sparse {
+    pub count: u64,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub component_type: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct BufferView {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: u64,
+    pub byte_length: u64,
+    pub byte_stride: Option<u64>,
+    pub extensions: Option<BTreeMap<String, Value>>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Buffer {
+    pub uri: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Image {
+    pub name: Option<String>,
+    pub uri: Option<String>,
+    pub buffer_view: Option<usize>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Texture {
+    pub source: Option<usize>,
+    pub sampler: Option<usize>,
+    pub extensions: Option<BTreeMap<String, Value>>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Sampler {
+    pub wrap_s: Option<u64>,
+    pub wrap_t: Option<u64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    pub name: Option<String>,
+    pub pbr_metallic_roughness: Option<MetallicRoughness>,
+    pub emissive_factor: Option<[f32; 3]>,
+    pub alpha_mode: Option<String>,
+    pub alpha_cutoff: Option<f32>,
+    #[serde(default)]
+    pub double_sided: bool,
+    #[serde(default)]
+    pub extensions: MaterialExtensions,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct MetallicRoughness {
+    pub base_color_factor: Option<[f32; 4]>,
+    pub base_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Deserialize, Default)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_unlit")]
+    pub unlit: Option<Value>,
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    pub emissive_strength: Option<EmissiveStrength>,
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub specular_glossiness: Option<SpecularGlossiness>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct EmissiveStrength {
+    pub emissive_strength: Option<f32>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SpecularGlossiness {
+    pub diffuse_factor: Option<[f32; 4]>,
+    pub diffuse_texture: Option<TextureInfo>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    pub index: usize,
+    #[serde(default)]
+    pub tex_coord: usize,
+    #[serde(default)]
+    pub extensions: TextureInfoExtensions,
+}
+
+#[derive(Deserialize, Default)]
+pub(super) struct TextureInfoExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub transform: Option<TextureTransform>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    pub offset: Option<[f32; 2]>,
+    pub rotation: Option<f32>,
+    pub scale: Option<[f32; 2]>,
+    pub tex_coord: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub joints: Vec<usize>,
+    pub inverse_bind_matrices: Option<usize>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Camera {
+    pub name: Option<String>,
+    pub perspective: Option<Perspective>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Perspective {
+    pub yfov: f64,
+}

@@ -1,0 +1,159 @@
+//! What can be wrong with a scene. Every message says what is wrong, where in the file, and what to do next.
+
+use std::path::{Path, PathBuf};
+use thiserror::Error;
+
+/// Why a scene was not loaded.
+#[derive(Debug, Clone, Error)]
+pub enum LoadError {
+    /// The scene, or a file that it names, cannot be read from disk.
+    #[error("cannot read {path}: {cause}; {advice}", path = .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        cause: String,
+        /// What to do next.
+        advice: &'static str,
+    },
+    /// The file is something else.
+    #[error("{path} is not a glTF scene: {cause}; export the scene as glTF 2.0 (.glb or .gltf), for example from Blender", path = .path.display())]
+    NotGltf {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        cause: String,
+    },
+    /// The file is cut off, or its lengths contradict each other.
+    #[error("{path} is damaged: {cause}; copy or export it again", path = .path.display())]
+    Truncated {
+        /// The file.
+        path: PathBuf,
+        /// Which length was declared and which was found.
+        cause: String,
+    },
+    /// A version of glTF that is not 2.
+    #[error("{path} is glTF {version}, and only glTF 2 is supported; {advice}", path = .path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        version: String,
+        /// What converts it.
+        advice: &'static str,
+    },
+    /// The JSON does not parse.
+    #[error("{path}: its JSON is wrong at line {line}, column {column}: {cause}; export it again or repair it there", path = .path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// Line within the JSON, from 1.
+        line: usize,
+        /// Column within the line, from 1.
+        column: usize,
+        /// What the parser said.
+        cause: String,
+    },
+    /// The JSON parses, and what it says cannot be.
+    #[error(
+        "{place}: {problem}; export the scene again, or see what the Khronos validator says of it: https://github.khronos.org/glTF-Validator"
+    )]
+    Structure {
+        /// Where in the file, for example `accessors[12]`.
+        place: String,
+        /// What is wrong there.
+        problem: String,
+    },
+    /// The file demands an extension that sunbake does not read.
+    #[error("the scene requires the extension {extension}, which sunbake does not read; {advice}")]
+    Extension {
+        /// Its name.
+        extension: String,
+        /// What removes it.
+        advice: String,
+    },
+    /// The scene names a file that sunbake will not open.
+    #[error(
+        "{place} names \"{uri}\", {reason}; put the file beside the scene and name it by a relative path, or pack everything into one .glb"
+    )]
+    Outside {
+        /// Where in the file.
+        place: String,
+        /// What it names.
+        uri: String,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// More memory would be needed than is allowed.
+    #[error(
+        "{what} needs {needed_bytes} bytes more, and of the limit of {limit_bytes} bytes only {left_bytes} are left; raise --max-memory, or simplify the scene"
+    )]
+    TooLarge {
+        /// What would need it.
+        what: String,
+        /// How much it would need.
+        needed_bytes: u64,
+        /// How much of the limit is left.
+        left_bytes: u64,
+        /// The limit.
+        limit_bytes: u64,
+    },
+    /// An image that shadows depend on cannot be had.
+    #[error(
+        "{place} cuts its surface by the alpha of {image}, which cannot be used: {cause}; its shadow would be wrong, so replace the image by a PNG, or set the material's alphaMode to OPAQUE"
+    )]
+    AlphaImage {
+        /// Which material.
+        place: String,
+        /// Which image.
+        image: String,
+        /// Why not.
+        cause: String,
+    },
+    /// Nodes form a ring.
+    #[error("nodes[{node}] is its own ancestor; remove it from the children of nodes[{parent}]")]
+    NodeCycle {
+        /// A node of the ring.
+        node: usize,
+        /// The node that names it as its child.
+        parent: usize,
+    },
+    /// Nothing to bake.
+    #[error("{path} draws no triangles: {cause}; check that meshes hang under nodes of the default scene", path = .path.display())]
+    NoTriangles {
+        /// The file.
+        path: PathBuf,
+        /// What there was instead.
+        cause: String,
+    },
+}
+
+/// Which exit code an error belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorClass {
+    /// A file could not be read (exit code 2).
+    Io,
+    /// The input is bad (exit code 3).
+    BadInput,
+    /// The input asks for what sunbake does not do (exit code 3).
+    Unsupported,
+}
+
+impl LoadError {
+    /// What kind of error this is.
+    pub fn class(&self) -> ErrorClass {
+        match self {
+            Self::Read { .. } => ErrorClass::Io,
+            Self::Extension { .. } | Self::Version { .. } => ErrorClass::Unsupported,
+            _ => ErrorClass::BadInput,
+        }
+    }
+
+    pub(super) fn structure(place: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Structure { place: place.into(), problem: problem.into() }
+    }
+
+    pub(super) fn read(path: &Path, cause: impl ToString, advice: &'static str) -> Self {
+        Self::Read { path: path.to_owned(), cause: cause.to_string(), advice }
+    }
+}

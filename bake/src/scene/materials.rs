@@ -1,0 +1,237 @@
+//! Materials, so far as shadows and the base colour need them.
+//!
+//! `BLEND` surfaces are cut at an alpha of one half. What `MASK` and `BLEND` come to is decided here by the range of alpha
+//! that a surface can have at all (factor times texture times vertex colour): always at or above the cutoff makes it
+//! opaque, so nothing has to sample it; a blended surface always below the cutoff is air.
+
+use super::{
+    Alpha, LoadError, Material, TextureRef, Wrap,
+    document::{self, Document, TextureInfo, TextureTransform, place},
+    images::Decoded,
+    limits::Log,
+    primitives::Drawn,
+};
+use glam::{Mat3, Vec2, Vec3, Vec4};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Alpha at and above which a `BLEND` surface is solid.
+pub const BLEND_CUTOFF: f32 = 0.5;
+
+/// A material before its image is decoded: [`TextureRef::image`] is still an index into the file's images.
+pub(super) struct Draft {
+    place: String,
+    material: Material,
+    /// `None`: alpha is ignored.
+    cutoff: Option<f32>,
+    /// Whether the file says `BLEND`.
+    is_blended: bool,
+}
+
+/// Which set of texture coordinates a material's base colour wants.
+pub(super) fn color_texcoord(doc: &Document, index: usize) -> Option<usize> {
+    let material: document::Material = doc.get(index).ok()?;
+    let (_, texture) = base_color(material);
+    texture.map(|info| texcoord(&info))
+}
+
+fn texcoord(info: &TextureInfo) -> usize {
+    info.extensions.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(info.tex_coord)
+}
+
+/// Reads the materials that are drawn, in file order and glTF's default material last, and numbers the meshes' so.
+pub(super) fn read(doc: &Document, drawn: &mut Drawn, log: &mut Log) -> Result<Vec<Draft>, LoadError> {
+    let sorted = |file: &Option<usize>| file.unwrap_or(usize::MAX);
+    let used: BTreeSet<usize> = drawn.file_material.iter().map(sorted).collect();
+    let new_from_file: BTreeMap<usize, usize> = used.iter().enumerate().map(|(new, &file)| (file, new)).collect();
+    for (mesh, file) in drawn.meshes.iter_mut().zip(&drawn.file_material) {
+        mesh.material = new_from_file.get(&sorted(file)).copied().unwrap_or_default();
+    }
+    used.into_iter().map(|file| draft(doc, file, log)).collect()
+}
+
+/// `index` is `usize::MAX` for the default material.
+fn draft(doc: &Document, index: usize, log: &mut Log) -> Result<Draft, LoadError> {
+    let (place, file) = match index {
+        usize::MAX => ("the default material".to_owned(), document::Material::default()),
+        _ => (place::<document::Material>(index), doc.get::<document::Material>(index)?),
+    };
+    let place = file.name.as_ref().map_or(place.clone(), |name| format!("{place} \"{name}\""));
+    let is_blended = file.alpha_mode.as_deref() == Some("BLEND");
+    let cutoff = match file.alpha_mode.as_deref() {
+        Some("MASK") => Some(file.alpha_cutoff.filter(|c| c.is_finite()).unwrap_or(0.5)),
+        Some("BLEND") => Some(BLEND_CUTOFF),
+        _ => None,
+    };
+    let strength = file.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength).unwrap_or(1.0);
+    let mut material = Material {
+        name: file.name.clone(),
+        base_color: Vec4::ONE,
+        base_color_texture: None,
+        emissive: Vec3::from_array(file.emissive_factor.unwrap_or_default()).clamp(Vec3::ZERO, Vec3::ONE)
+            * strength.clamp(0.0, 1e6),
+        alpha: Alpha::Opaque,
+        is_double_sided: file.double_sided,
+        is_unlit: file.extensions.unlit.is_some(),
+    };
+    let (factor, texture) = base_color(file);
+    material.base_color = Vec4::from_array(factor).clamp(Vec4::ZERO, Vec4::ONE);
+    match texture.map(|info| texture_ref(doc, &info)) {
+        Some(Err(cause)) => lose_texture(&place, "its base colour texture", &cause, cutoff.is_some(), log)?,
+        Some(Ok(texture)) => material.base_color_texture = Some(texture),
+        None => {}
+    }
+    Ok(Draft { place, material, cutoff, is_blended })
+}
+
+/// Metallic-roughness, else the older specular-glossiness model's diffuse colour.
+fn base_color(file: document::Material) -> ([f32; 4], Option<TextureInfo>) {
+    let plain = file.pbr_metallic_roughness.unwrap_or_default();
+    let is_plain = plain.base_color_factor.is_some() || plain.base_color_texture.is_some();
+    let (factor, texture) = match file.extensions.specular_glossiness {
+        Some(older) if !is_plain => (older.diffuse_factor, older.diffuse_texture),
+        _ => (plain.base_color_factor, plain.base_color_texture),
+    };
+    (factor.unwrap_or([1.0; 4]), texture)
+}
+
+fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String> {
+    let texture: document::Texture = doc.get(info.index).map_err(|error| error.to_string())?;
+    let image = texture.source.ok_or_else(|| match texture.extensions.iter().flatten().next() {
+        Some((extension, _)) => format!("it is given by {extension} alone, which sunbake does not read"),
+        None => "it names no image".to_owned(),
+    })?;
+    let sampler = texture.sampler.and_then(|sampler| doc.get::<document::Sampler>(sampler).ok());
+    let wrap = |code: Option<u64>| match code {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    Ok(TextureRef {
+        image,
+        // Set 2 and beyond stand in place of set 0: see `primitives`.
+        texcoord: usize::from(texcoord(info) == 1),
+        image_from_texcoord: info.extensions.transform.as_ref().map_or(Mat3::IDENTITY, image_from_texcoord),
+        wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]),
+    })
+}
+
+/// `KHR_texture_transform`: scale, then a turn that is counter-clockwise to the eye (v points down), then the offset.
+fn image_from_texcoord(transform: &TextureTransform) -> Mat3 {
+    let (sin, cos) = transform.rotation.unwrap_or_default().sin_cos();
+    let turn = Mat3::from_cols(Vec3::new(cos, -sin, 0.0), Vec3::new(sin, cos, 0.0), Vec3::Z);
+    let scale = Mat3::from_scale(transform.scale.map_or(Vec2::ONE, Vec2::from_array));
+    let matrix = Mat3::from_translation(transform.offset.map_or(Vec2::ZERO, Vec2::from_array)) * turn * scale;
+    if matrix.is_finite() { matrix } else { Mat3::IDENTITY }
+}
+
+/// What a lost image costs: an error where shadows depend on it, a warning where only the look does.
+fn lose_texture(place: &str, image: &str, cause: &str, cuts: bool, log: &mut Log) -> Result<(), LoadError> {
+    if cuts {
+        return Err(LoadError::AlphaImage { place: place.into(), image: image.into(), cause: cause.into() });
+    }
+    log.warn(format!("{image} cannot be used ({cause}); drawn in its plain colour instead"), place);
+    Ok(())
+}
+
+/// The file's images that base colours need.
+pub(super) fn needed_images(drafts: &[Draft]) -> BTreeSet<usize> {
+    drafts.iter().filter_map(|draft| draft.material.base_color_texture).map(|texture| texture.image).collect()
+}
+
+/// Finishes the materials: images by their final index, and what alpha comes to.
+pub(super) fn finish(
+    drafts: Vec<Draft>,
+    images: &BTreeMap<usize, Decoded>,
+    drawn: &Drawn,
+    log: &mut Log,
+) -> Result<Vec<Material>, LoadError> {
+    let vertex_alpha = vertex_alpha_ranges(drawn, drafts.len());
+    let finish_one = |(mut draft, vertex): (Draft, Range)| {
+        let mut texture_alpha = Range { low: 1.0, high: 1.0 };
+        if let Some(texture) = &mut draft.material.base_color_texture {
+            match images.get(&texture.image) {
+                Some(Decoded::Ready { index, lowest_alpha, highest_alpha }) => {
+                    texture.image = *index;
+                    texture_alpha = Range { low: unit(*lowest_alpha), high: unit(*highest_alpha) };
+                }
+                Some(Decoded::Failed { name, cause, has_no_alpha }) => {
+                    let cuts = draft.cutoff.is_some() && !has_no_alpha;
+                    lose_texture(&draft.place, name, cause, cuts, log)?;
+                    draft.material.base_color_texture = None;
+                }
+                None => draft.material.base_color_texture = None,
+            }
+        }
+        let factor = draft.material.base_color.w;
+        let range =
+            Range { low: factor * texture_alpha.low * vertex.low, high: factor * texture_alpha.high * vertex.high };
+        draft.material.alpha = draft.cutoff.map_or(Alpha::Opaque, |cutoff| range.cut_at(cutoff, draft.is_blended));
+        Ok(draft.material)
+    };
+    drafts.into_iter().zip(vertex_alpha).map(finish_one).collect()
+}
+
+fn unit(byte: u8) -> f32 {
+    f32::from(byte) / 255.0
+}
+
+#[derive(Clone, Copy)]
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+impl Range {
+    fn cut_at(self, cutoff: f32, is_blended: bool) -> Alpha {
+        match (self.low >= cutoff, self.high >= cutoff) {
+            (true, _) => Alpha::Opaque,
+            (_, false) if is_blended => Alpha::Air,
+            _ => Alpha::Cut { cutoff },
+        }
+    }
+}
+
+/// For each material, the range of vertex alpha over all meshes that wear it.
+fn vertex_alpha_ranges(drawn: &Drawn, material_count: usize) -> Vec<Range> {
+    let mut ranges = vec![Range { low: f32::INFINITY, high: f32::NEG_INFINITY }; material_count];
+    for mesh in &drawn.meshes {
+        let Some(range) = ranges.get_mut(mesh.material) else { continue };
+        let mut widen = |alpha: f32| *range = Range { low: range.low.min(alpha), high: range.high.max(alpha) };
+        match &mesh.colors {
+            Some(colors) => colors.iter().for_each(|color| widen(color.w)),
+            None => widen(1.0),
+        }
+    }
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_texture_turns_about_the_origin_counter_clockwise_to_the_eye() {
+        let quarter = TextureTransform {
+            offset: Some([0.25, 0.5]),
+            rotation: Some(std::f32::consts::FRAC_PI_2),
+            scale: Some([2.0, 4.0]),
+            tex_coord: None,
+        };
+        let matrix = image_from_texcoord(&quarter);
+        assert!(matrix.transform_point2(Vec2::ZERO).distance(Vec2::new(0.25, 0.5)) < 1e-6);
+        assert!(matrix.transform_point2(Vec2::X).distance(Vec2::new(0.25, 0.5 - 2.0)) < 1e-6, "u turns up: v is down");
+        assert!(matrix.transform_point2(Vec2::Y).distance(Vec2::new(0.25 + 4.0, 0.5)) < 1e-6);
+    }
+
+    #[test]
+    fn alpha_is_sampled_only_where_it_can_fall_on_both_sides_of_the_cutoff() {
+        let cut = |low, high, cutoff| Range { low, high }.cut_at(cutoff, true);
+        assert_eq!(cut(0.0, 1.0, 0.5), Alpha::Cut { cutoff: 0.5 });
+        assert_eq!(cut(0.0, 1.0, 0.0), Alpha::Opaque, "nothing is below a cutoff of 0");
+        assert_eq!(cut(0.0, 1.0, 1.0), Alpha::Cut { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
+        assert_eq!(cut(0.0, 0.49, 0.5), Alpha::Air);
+        assert_eq!(cut(0.5, 0.5, 0.5), Alpha::Opaque);
+        let mask = Range { low: 0.0, high: 0.4 }.cut_at(0.5, false);
+        assert_eq!(mask, Alpha::Cut { cutoff: 0.5 }, "a mask stays a mask, even one that hides everything");
+    }
+}

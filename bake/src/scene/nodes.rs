@@ -1,0 +1,190 @@
+//! The node hierarchy of the scene that is drawn, its matrices composed in `f64`.
+//!
+//! Map coordinates have seven digits before the point and matter to the millimetre, so translations are read as `f64`
+//! straight from the JSON and are never rounded. The walk keeps its own stack: a chain of a million nodes is only long.
+
+use super::{
+    LoadError, Node,
+    document::{self, Document, place},
+    limits::Log,
+    refuse,
+};
+use glam::{DMat4, DQuat, DVec3, DVec4};
+
+/// Nodes of the drawn scene, parents before children, and what each was in the file.
+pub(super) struct Tree {
+    pub nodes: Vec<Node>,
+    /// For each node, its index in the file.
+    pub file_index: Vec<usize>,
+    /// All nodes of the file.
+    pub file: Vec<document::Node>,
+}
+
+/// Columns so nearly in one plane that the matrix has no usable inverse.
+const SINGULAR: f64 = 1e-12;
+
+/// Reads the default scene, else the first, else every node that has no parent.
+pub(super) fn read(doc: &Document, log: &mut Log) -> Result<Tree, LoadError> {
+    let count = doc.count::<document::Node>();
+    let file: Vec<document::Node> = (0..count).map(|index| doc.get(index)).collect::<Result<_, _>>()?;
+    let roots = roots(doc, &file)?;
+    walk(file, roots, log)
+}
+
+fn roots(doc: &Document, file: &[document::Node]) -> Result<Vec<usize>, LoadError> {
+    let scene = doc.root.get("scene").and_then(serde_json::Value::as_u64).unwrap_or(0) as usize;
+    if doc.count::<document::SceneRoots>() > 0 {
+        return Ok(doc.get::<document::SceneRoots>(scene)?.nodes.unwrap_or_default());
+    }
+    let mut is_child = vec![false; file.len()];
+    for child in file.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(flag) = is_child.get_mut(*child) {
+            *flag = true;
+        }
+    }
+    let roots: Vec<usize> = (0..file.len()).filter(|&i| is_child.get(i) == Some(&false)).collect();
+    match (roots.is_empty(), file.is_empty()) {
+        (true, false) => Err(LoadError::NodeCycle { node: 0, parent: parent_of(file, 0) }),
+        _ => Ok(roots),
+    }
+}
+
+fn parent_of(file: &[document::Node], child: usize) -> usize {
+    file.iter().position(|node| node.children.iter().flatten().any(|&c| c == child)).unwrap_or(child)
+}
+
+/// What the walk knows of a node of the file.
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    Unseen,
+    /// Above the node that is being read now.
+    Open,
+    Done,
+}
+
+/// What the walk does next.
+enum Step {
+    Enter { index: usize, parent: Option<usize> },
+    Leave { index: usize },
+}
+
+fn walk(file: Vec<document::Node>, roots: Vec<usize>, log: &mut Log) -> Result<Tree, LoadError> {
+    let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), file };
+    let mut marks = vec![Mark::Unseen; tree.file.len()];
+    let enter = |index, parent| Step::Enter { index, parent };
+    let mut steps: Vec<Step> = roots.into_iter().rev().map(|root| enter(root, None)).collect();
+    while let Some(step) = steps.pop() {
+        let (index, parent) = match step {
+            Step::Enter { index, parent } => (index, parent),
+            Step::Leave { index } => {
+                marks.get_mut(index).into_iter().for_each(|mark| *mark = Mark::Done);
+                continue;
+            }
+        };
+        let above = parent.and_then(|node| tree.file_index.get(node)).copied();
+        match marks.get_mut(index) {
+            None => return Err(missing(&tree, index, above)),
+            Some(Mark::Open) => return Err(LoadError::NodeCycle { node: index, parent: above.unwrap_or(index) }),
+            Some(Mark::Done) => log.warn(SECOND_PARENT, place::<document::Node>(index)),
+            Some(mark) => {
+                *mark = Mark::Open;
+                steps.push(Step::Leave { index });
+                if let Some(node) = tree.add(index, parent, log)? {
+                    let children = tree.file.get(index).and_then(|node| node.children.as_deref()).unwrap_or(&[]);
+                    steps.extend(children.iter().rev().map(|&child| enter(child, Some(node))));
+                }
+            }
+        }
+    }
+    Ok(tree)
+}
+
+const SECOND_PARENT: &str = "it has more than one parent, and is drawn under the first alone";
+
+fn missing(tree: &Tree, index: usize, parent: Option<usize>) -> LoadError {
+    let place = parent.map_or_else(|| "scenes".to_owned(), place::<document::Node>);
+    LoadError::structure(place, format!("it has the node {index}, and there are only {}", tree.file.len()))
+}
+
+impl Tree {
+    /// Places a node; `None` where nothing at or below it is drawn.
+    fn add(&mut self, index: usize, parent: Option<usize>, log: &mut Log) -> Result<Option<usize>, LoadError> {
+        let Some(node) = self.file.get(index) else { return Ok(None) };
+        refuse::check_node(node)?;
+        if is_hidden(node) {
+            return Ok(None);
+        }
+        let parent_from_node = local_matrix(node);
+        let world_from_parent = parent.and_then(|p| self.nodes.get(p)).map_or(DMat4::IDENTITY, |p| p.world_from_node);
+        let world_from_node = world_from_parent * parent_from_node;
+        if !is_invertible(&world_from_node) {
+            log.warn("its matrix is singular, so it and what is below it have no volume; left out", label(node, index));
+            return Ok(None);
+        }
+        self.nodes.push(Node { name: node.name.clone(), parent, parent_from_node, world_from_node });
+        self.file_index.push(index);
+        Ok(Some(self.nodes.len() - 1))
+    }
+
+    /// World matrices of all nodes of the file, drawn or not: a skin's joints may hang anywhere.
+    pub fn world_from_file_nodes(&self) -> Vec<DMat4> {
+        let mut worlds: Vec<DMat4> = self.file.iter().map(local_matrix).collect();
+        let mut is_child = vec![false; worlds.len()];
+        for &child in self.file.iter().flat_map(|node| node.children.iter().flatten()) {
+            is_child.get_mut(child).into_iter().for_each(|flag| *flag = true);
+        }
+        let mut stack: Vec<(usize, DMat4)> =
+            (0..worlds.len()).filter(|&i| is_child.get(i) == Some(&false)).map(|i| (i, DMat4::IDENTITY)).collect();
+        let mut is_done = vec![false; worlds.len()];
+        while let Some((index, world_from_parent)) = stack.pop() {
+            let (Some(world), Some(done)) = (worlds.get_mut(index), is_done.get_mut(index)) else { continue };
+            if !std::mem::replace(done, true) {
+                *world = world_from_parent * *world;
+                let children = self.file.get(index).and_then(|node| node.children.as_deref()).unwrap_or(&[]);
+                stack.extend(children.iter().map(|&child| (child, *world)));
+            }
+        }
+        worlds
+    }
+}
+
+/// `KHR_node_visibility`.
+fn is_hidden(node: &document::Node) -> bool {
+    let visibility = node.extensions.as_ref().and_then(|all| all.get("KHR_node_visibility"));
+    visibility.and_then(|v| v.get("visible")) == Some(&serde_json::Value::Bool(false))
+}
+
+/// `nodes[7] "Wall"`.
+pub(super) fn label(node: &document::Node, index: usize) -> String {
+    match &node.name {
+        Some(name) => format!("{} \"{name}\"", place::<document::Node>(index)),
+        None => place::<document::Node>(index),
+    }
+}
+
+fn local_matrix(node: &document::Node) -> DMat4 {
+    if let Some(matrix) = &node.matrix {
+        // The last row of an affine matrix, whatever the file says.
+        let [a, b, c, _, d, e, f, _, g, h, i, _, x, y, z, _] = *matrix;
+        let column = |x, y, z, w| DVec4::new(x, y, z, w);
+        return DMat4::from_cols(
+            column(a, b, c, 0.0),
+            column(d, e, f, 0.0),
+            column(g, h, i, 0.0),
+            column(x, y, z, 1.0),
+        );
+    }
+    let translation = node.translation.map_or(DVec3::ZERO, DVec3::from_array);
+    let scale = node.scale.map_or(DVec3::ONE, DVec3::from_array);
+    let turn = node.rotation.map_or(DVec4::W, DVec4::from_array).try_normalize().unwrap_or(DVec4::W);
+    DMat4::from_scale_rotation_translation(scale, DQuat::from_vec4(turn), translation)
+}
+
+/// Judged by the shape of the matrix and not by its size.
+fn is_invertible(matrix: &DMat4) -> bool {
+    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|c| c.truncate());
+    let lengths = columns.map(DVec3::length);
+    let is_sound = matrix.is_finite() && lengths.iter().all(|&l| l > 1e-30 && l < 1e30);
+    let [x, y, z] = columns.map(DVec3::normalize_or_zero);
+    is_sound && x.cross(y).dot(z).abs() > SINGULAR
+}

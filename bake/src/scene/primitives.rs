@@ -1,0 +1,213 @@
+//! Drawn meshes: every primitive that some node draws, read once, triangulated, posed and cleaned.
+
+use super::{
+    Dropped, LoadError, Mesh,
+    accessors::Reader,
+    document::{self, Primitive, place},
+    limits::Log,
+    materials,
+    nodes::Tree,
+    normals,
+    pose::Pose,
+    refuse,
+    triangles::{self, Topology},
+};
+use glam::{DMat4, Vec2, Vec3, Vec4};
+use std::collections::HashMap;
+
+/// What the nodes draw.
+#[derive(Default)]
+pub(super) struct Drawn {
+    pub meshes: Vec<Mesh>,
+    /// For each mesh, its material in the file.
+    pub file_material: Vec<Option<usize>>,
+    /// Pairs of a node and a mesh, in node order.
+    pub draws: Vec<(usize, usize)>,
+    pub dropped: Dropped,
+}
+
+/// A mesh in the file and, where a node bends it, that node.
+type PosedMesh = (usize, Option<usize>);
+
+/// Reads what the nodes of a tree draw.
+pub(super) fn read(reader: Reader, tree: &Tree, log: &mut Log) -> Result<Drawn, LoadError> {
+    let mut drawn = Drawn::default();
+    let mut known: HashMap<PosedMesh, Vec<usize>> = HashMap::new();
+    let mut worlds: Option<Vec<DMat4>> = None;
+    for (node, &file_index) in tree.file_index.iter().enumerate() {
+        let Some(file) = tree.file.get(file_index) else { continue };
+        let Some(mesh_index) = file.mesh else { continue };
+        let is_posed = file.skin.is_some() || file.weights.is_some();
+        let key = (mesh_index, is_posed.then_some(node));
+        if !known.contains_key(&key) {
+            let mesh: document::Mesh = reader.doc.get(mesh_index)?;
+            let pose = match is_posed {
+                true => Pose::of_node(
+                    reader,
+                    tree,
+                    worlds.get_or_insert_with(|| tree.world_from_file_nodes()),
+                    node,
+                    &mesh,
+                )?,
+                false => Pose::of_mesh(&mesh),
+            };
+            if file.skin.is_some() {
+                log.warn(
+                    "its skin was baked as it stands when nothing is animated",
+                    super::nodes::label(file, file_index),
+                );
+            }
+            known.insert(key, drawn.read_mesh(reader, mesh_index, &mesh, &pose, log)?);
+        }
+        drawn.draws.extend(known.get(&key).into_iter().flatten().map(|&mesh| (node, mesh)));
+    }
+    Ok(drawn)
+}
+
+impl Drawn {
+    /// Reads the primitives of a mesh, and says which meshes of ours they became.
+    fn read_mesh(
+        &mut self,
+        reader: Reader,
+        index: usize,
+        mesh: &document::Mesh,
+        pose: &Pose,
+        log: &mut Log,
+    ) -> Result<Vec<usize>, LoadError> {
+        let mut made = Vec::new();
+        for (at, primitive) in mesh.primitives.iter().flatten().enumerate() {
+            let name = mesh.name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
+            let place = format!("{}{name} primitive {at}", place::<document::Mesh>(index));
+            let material = known_material(reader, primitive, &place, log);
+            let source = PrimitiveReader { reader, primitive, pose, place: &place, material };
+            if let Some(mut read) = source.read(&mut self.dropped, log)? {
+                read.name.clone_from(&mesh.name);
+                read.gltf = (index, at);
+                made.push(self.meshes.len());
+                self.meshes.push(read);
+                self.file_material.push(material);
+            }
+        }
+        Ok(made)
+    }
+}
+
+fn known_material(reader: Reader, primitive: &Primitive, place: &str, log: &mut Log) -> Option<usize> {
+    let index = primitive.material?;
+    if index < reader.doc.count::<document::Material>() {
+        return Some(index);
+    }
+    log.warn("its material does not exist; the default material is used", place);
+    None
+}
+
+struct PrimitiveReader<'a> {
+    reader: Reader<'a>,
+    primitive: &'a Primitive,
+    pose: &'a Pose,
+    place: &'a str,
+    material: Option<usize>,
+}
+
+impl PrimitiveReader<'_> {
+    /// `None` where there is no surface.
+    fn read(&self, dropped: &mut Dropped, log: &mut Log) -> Result<Option<Mesh>, LoadError> {
+        let position = self.primitive.attributes.get("POSITION").copied();
+        refuse::check_primitive(self.primitive, position.is_some_and(|accessor| self.reader.has_data(accessor)))?;
+        let Some(topology) = Topology::from_mode(self.primitive.mode.unwrap_or(4)) else {
+            log.warn("points and lines cast no shadow; left out", self.place);
+            return Ok(None);
+        };
+        let Some(position) = position else {
+            log.warn("it has no positions; left out", self.place);
+            return Ok(None);
+        };
+        let mut positions: Vec<Vec3> = self.reader.floats(position)?.into_iter().map(Vec3::from_array).collect();
+        let indices = self.indices(topology, positions.len())?;
+        let mut normals = self.looks("NORMAL", positions.len(), log, |r, at| Ok(vectors(r.floats::<3>(at)?)))?;
+        if self.primitive.targets.is_some() {
+            log.warn("its morph targets were baked at their default weights", self.place);
+        }
+        self.pose.apply(self.reader, self.primitive, &mut positions, normals.as_mut())?;
+        let indices = triangles::clean(&indices, &positions, dropped);
+        if indices.is_empty() {
+            return Ok(None);
+        }
+        let (used, indices) = triangles::compact(&indices, positions.len());
+        let count = positions.len();
+        let positions = gather(&positions, &used);
+        let normals = normals.map(|all| normals::repaired(gather(&all, &used), &positions, &indices));
+        let texcoords = self.texcoords(count, &used, log)?;
+        let colors = self.looks("COLOR_0", count, log, colors)?.map(|all| gather(&all, &used));
+        Ok(Some(Mesh { positions, normals, texcoords, colors, indices, ..Mesh::default() }))
+    }
+
+    fn indices(&self, topology: Topology, vertex_count: usize) -> Result<Vec<u32>, LoadError> {
+        let order: Vec<u32> = match self.primitive.indices {
+            Some(accessor) => self.reader.integers::<1>(accessor)?.into_iter().flatten().collect(),
+            None => (0..vertex_count as u32).collect(),
+        };
+        triangles::check_range(&order, vertex_count, self.place)?;
+        self.reader.budget.take(order.len() as u64, 12, || format!("the triangles of {}", self.place))?;
+        Ok(topology.triangulate(&order))
+    }
+
+    /// An attribute that only the look depends on: one that cannot be read is left out.
+    fn looks<T>(
+        &self,
+        name: &'static str,
+        count: usize,
+        log: &mut Log,
+        read: impl Fn(Reader, usize) -> Result<Vec<T>, LoadError>,
+    ) -> Result<Option<Vec<T>>, LoadError> {
+        let Some(&accessor) = self.primitive.attributes.get(name) else { return Ok(None) };
+        match read(self.reader, accessor) {
+            Ok(values) if values.len() == count => return Ok(Some(values)),
+            Err(error @ LoadError::TooLarge { .. }) => return Err(error),
+            Ok(_) => log.warn(format!("its {name} has another count than its positions; left out"), self.place),
+            Err(error) => log.warn(format!("its {name} cannot be read; left out ({error})"), self.place),
+        }
+        Ok(None)
+    }
+
+    /// Sets 0 and 1; but where the base colour wants a set beyond them, that one stands in place of set 0.
+    fn texcoords(&self, count: usize, used: &[u32], log: &mut Log) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
+        let wanted = self.material.and_then(|m| materials::color_texcoord(self.reader.doc, m)).filter(|&set| set > 1);
+        let first = wanted.map_or_else(|| "TEXCOORD_0".to_owned(), |set| format!("TEXCOORD_{set}"));
+        let mut sets = [None, None];
+        for (slot, name) in sets.iter_mut().zip([first.as_str(), "TEXCOORD_1"]) {
+            let Some(&accessor) = self.primitive.attributes.get(name) else { continue };
+            let values = self.reader.floats::<2>(accessor)?;
+            match values.len() == count {
+                true => *slot = Some(gather(&values, used).into_iter().map(finite_texcoord).collect()),
+                false => {
+                    log.warn("it has texture coordinates of another count than its positions; left out", self.place)
+                }
+            }
+        }
+        Ok(sets)
+    }
+}
+
+fn vectors(values: Vec<[f32; 3]>) -> Vec<Vec3> {
+    values.into_iter().map(Vec3::from_array).collect()
+}
+
+fn finite_texcoord([u, v]: [f32; 2]) -> Vec2 {
+    let finite = |x: f32| if x.is_finite() { x } else { 0.0 };
+    Vec2::new(finite(u), finite(v))
+}
+
+/// RGB or RGBA; clamped, as the specification asks.
+fn colors(reader: Reader, accessor: usize) -> Result<Vec<Vec4>, LoadError> {
+    let clamped = |c: Vec4| if c.is_finite() { c.clamp(Vec4::ZERO, Vec4::ONE) } else { Vec4::ONE };
+    Ok(match reader.lanes(accessor)? {
+        3 => vectors(reader.floats::<3>(accessor)?).into_iter().map(|c| clamped(c.extend(1.0))).collect(),
+        _ => reader.floats::<4>(accessor)?.into_iter().map(|c| clamped(Vec4::from_array(c))).collect(),
+    })
+}
+
+/// The used entries of an attribute; all of them, where all are used.
+fn gather<T: Copy>(values: &[T], used: &[u32]) -> Vec<T> {
+    used.iter().filter_map(|&index| values.get(index as usize).copied()).collect()
+}

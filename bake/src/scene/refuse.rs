@@ -1,0 +1,88 @@
+//! Extensions that change what is drawn and that sunbake does not read: refused by name, with what removes them.
+//!
+//! The commands were tried with gltf-transform 4.5. An extension that only changes how a surface shines, or that tells
+//! of something other than geometry, does no harm to a bake and is passed over even where a file requires it.
+
+use super::{
+    LoadError,
+    document::{BufferView, Document, Node, Primitive},
+};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+const DRACO: &str = "KHR_draco_mesh_compression";
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// Read in full, or without bearing on geometry and base colour.
+const HARMLESS: [&str; 14] = [
+    "KHR_lights_punctual",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "KHR_animation_pointer",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "EXT_lights_image_based",
+    "EXT_lights_ies",
+    "EXT_texture_procedurals",
+    "FB_geometry_metadata",
+    "KHR_audio",
+    "KHR_audio_emitter",
+    "KHR_node_visibility",
+    "MSFT_packing_occlusionRoughnessMetallic",
+];
+
+/// Refuses a file that requires what sunbake does not read.
+pub(super) fn check_required(doc: &Document) -> Result<(), LoadError> {
+    match doc.strings("extensionsRequired").find(|name| !is_harmless(name)) {
+        Some(name) => Err(refusal(name)),
+        None => Ok(()),
+    }
+}
+
+fn is_harmless(name: &str) -> bool {
+    HARMLESS.contains(&name) || name.starts_with("KHR_materials_") || name.starts_with("KHR_physics")
+}
+
+fn refusal(name: &str) -> LoadError {
+    LoadError::Extension { extension: name.to_owned(), advice: advice(name) }
+}
+
+fn advice(name: &str) -> String {
+    let command = match name {
+        DRACO | "EXT_meshopt_compression" | "KHR_meshopt_compression" => "copy IN OUT.glb",
+        "KHR_texture_basisu" => "ktxdecompress IN OUT.glb",
+        "EXT_texture_webp" | "EXT_texture_avif" => "png IN OUT.glb --formats \"*\"",
+        INSTANCING => return "export the scene without GPU instancing, with one node for each copy".into(),
+        _ => return "export the scene without it".into(),
+    };
+    format!("remove it: npx @gltf-transform/cli {command}")
+}
+
+fn has(extensions: Option<&BTreeMap<String, Value>>, name: &str) -> bool {
+    extensions.is_some_and(|map| map.contains_key(name))
+}
+
+/// Why a view's buffer is not there: perhaps its bytes stand elsewhere, compressed.
+pub(super) fn missing_buffer(view: &BufferView, error: &LoadError) -> LoadError {
+    match MESHOPT.iter().find(|name| has(view.extensions.as_ref(), name)) {
+        Some(name) => refusal(name),
+        None => error.clone(),
+    }
+}
+
+/// Refuses a primitive that has no data but its Draco data.
+pub(super) fn check_primitive(primitive: &Primitive, has_plain_positions: bool) -> Result<(), LoadError> {
+    match has(primitive.extensions.as_ref(), DRACO) && !has_plain_positions {
+        true => Err(refusal(DRACO)),
+        false => Ok(()),
+    }
+}
+
+/// Refuses a node that draws its mesh many times: the file may call it optional, but the shadows would be wrong.
+pub(super) fn check_node(node: &Node) -> Result<(), LoadError> {
+    match node.mesh.is_some() && has(node.extensions.as_ref(), INSTANCING) {
+        true => Err(refusal(INSTANCING)),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,192 @@
+//! Buffers and images that a scene names: inside the file, in a data URI, or in a file below the scene's own folder.
+//!
+//! A scene may come from a stranger, so it opens nothing outside its folder: no URL, no absolute path, no path that
+//! climbs out by `..` or by a symbolic link.
+
+use super::{
+    LoadError,
+    container::read_file,
+    document::{self, Document, place},
+    limits::Budget,
+};
+use sha2::{Digest, Sha256};
+use std::{
+    borrow::Cow,
+    path::{Path, PathBuf},
+};
+
+/// Fetches what URIs name, and hashes what came from other files.
+pub(super) struct Fetcher<'a> {
+    folder: PathBuf,
+    budget: &'a Budget,
+    hasher: Sha256,
+}
+
+impl<'a> Fetcher<'a> {
+    /// `bytes` are those of the scene's own file.
+    pub fn new(scene: &Path, bytes: &[u8], budget: &'a Budget) -> Self {
+        let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Self { folder: folder.to_owned(), budget, hasher: Sha256::new_with_prefix(bytes) }
+    }
+
+    /// The bytes that a URI stands for.
+    pub fn fetch(&mut self, place: &str, uri: &str) -> Result<Vec<u8>, LoadError> {
+        if let Some(data) = uri.strip_prefix("data:") {
+            self.budget.take(data.len() as u64, 1, || place.to_owned())?;
+            return decode_data_uri(data).map_err(|problem| LoadError::structure(place, problem));
+        }
+        let path = self.resolve(place, uri)?;
+        let bytes = read_file(&path, self.budget, "put it back beside the scene, or export the scene as one .glb")?;
+        self.hasher.update(&bytes);
+        Ok(bytes)
+    }
+
+    /// SHA-256 of everything fetched so far, in lower-case hex.
+    pub fn into_sha256(self) -> String {
+        self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    fn resolve(&self, place: &str, uri: &str) -> Result<PathBuf, LoadError> {
+        let short = || uri.chars().take(200).collect();
+        let refuse = |reason| LoadError::Outside { place: place.to_owned(), uri: short(), reason };
+        let relative = percent_decoded(uri).replace('\\', "/");
+        if has_scheme(&relative) {
+            return Err(refuse("a URL or an absolute path, and sunbake opens only files in the scene's own folder"));
+        }
+        if climbs_out(&relative) {
+            return Err(refuse("which lies outside the scene's own folder"));
+        }
+        let path = self.folder.join(&relative);
+        match (path.canonicalize(), self.folder.canonicalize()) {
+            (Ok(real), Ok(folder)) if !real.starts_with(&folder) => {
+                Err(refuse("a symbolic link that leads outside the scene's own folder"))
+            }
+            _ => Ok(path),
+        }
+    }
+}
+
+/// `http:`, `file:`, `C:`; an absolute path; a path with a zero byte, which no system opens.
+fn has_scheme(path: &str) -> bool {
+    let scheme = path.split(['/', '?', '#']).next().unwrap_or_default();
+    path.starts_with('/') || scheme.contains(':') || path.contains('\0')
+}
+
+fn climbs_out(path: &str) -> bool {
+    let mut depth = 0i64;
+    path.split('/').any(|part| {
+        depth += match part {
+            "" | "." => 0,
+            ".." => -1,
+            _ => 1,
+        };
+        depth < 0
+    })
+}
+
+fn hex_digit(byte: u8) -> Option<u8> {
+    char::from(byte).to_digit(16).map(|digit| digit as u8)
+}
+
+/// `%20` becomes a space; what is no escape stays as it is.
+fn percent_decoded(text: &str) -> String {
+    String::from_utf8(percent_decoded_bytes(text.as_bytes())).unwrap_or_else(|_| text.to_owned())
+}
+
+fn percent_decoded_bytes(mut rest: &[u8]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(rest.len());
+    while let [first, tail @ ..] = rest {
+        rest = tail;
+        match (first, tail) {
+            (b'%', [high, low, after @ ..]) => match (hex_digit(*high), hex_digit(*low)) {
+                (Some(high), Some(low)) => {
+                    out.push(high << 4 | low);
+                    rest = after;
+                }
+                _ => out.push(b'%'),
+            },
+            _ => out.push(*first),
+        }
+    }
+    out
+}
+
+/// What follows `data:`.
+fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
+    let (head, body) = data.split_once(',').ok_or("its data URI has no comma")?;
+    match head.ends_with(";base64") {
+        true => decode_base64(body),
+        false => Ok(percent_decoded_bytes(body.as_bytes())),
+    }
+}
+
+/// RFC 4648, both alphabets; white space and padding are skipped.
+fn decode_base64(text: &str) -> Result<Vec<u8>, String> {
+    let mut out = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut count) = (0u32, 0u32);
+    for (at, byte) in text.bytes().enumerate() {
+        let digit = match byte {
+            b'A'..=b'Z' => byte - b'A',
+            b'a'..=b'z' => byte - b'a' + 26,
+            b'0'..=b'9' => byte - b'0' + 52,
+            b'+' | b'-' => 62,
+            b'/' | b'_' => 63,
+            b'=' | b' ' | b'\t' | b'\r' | b'\n' => continue,
+            _ => return Err(format!("its data URI has a wrong base64 character at {at}")),
+        };
+        bits = bits << 6 | u32::from(digit);
+        count += 6;
+        if count >= 8 {
+            count -= 8;
+            out.push((bits >> count) as u8);
+        }
+    }
+    Ok(out)
+}
+
+/// All buffers. One that cannot be had is an error only when something needs it.
+pub(super) struct Buffers<'a> {
+    buffers: Vec<Result<Cow<'a, [u8]>, LoadError>>,
+}
+
+impl<'a> Buffers<'a> {
+    /// Fetches every buffer. Refuses a scene that names a file outside its folder even where nothing needs it.
+    pub fn read(doc: &Document, binary: Option<&'a [u8]>, fetcher: &mut Fetcher) -> Result<Self, LoadError> {
+        let one = |index| match read_buffer(doc, index, binary, fetcher) {
+            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => Err(error),
+            other => Ok(other),
+        };
+        Ok(Self { buffers: (0..doc.count::<document::Buffer>()).map(one).collect::<Result<_, _>>()? })
+    }
+
+    /// The bytes of a buffer view, and its stride if it states one.
+    pub fn view(&self, doc: &Document, index: usize) -> Result<(&[u8], Option<u64>), LoadError> {
+        let view: document::BufferView = doc.get(index)?;
+        let place = || place::<document::BufferView>(index);
+        let buffer = self.buffers.get(view.buffer).ok_or_else(|| {
+            LoadError::structure(place(), format!("it lies in buffers[{}], which does not exist", view.buffer))
+        })?;
+        let buffer = buffer.as_ref().map_err(|error| super::refuse::missing_buffer(&view, error))?;
+        let end = view.byte_offset.saturating_add(view.byte_length);
+        let bytes = buffer.get(view.byte_offset as usize..end as usize).ok_or_else(|| {
+            let problem = format!("it ends at byte {end} of buffers[{}], which has {}", view.buffer, buffer.len());
+            LoadError::structure(place(), problem)
+        })?;
+        Ok((bytes, view.byte_stride))
+    }
+}
+
+fn read_buffer<'a>(
+    doc: &Document,
+    index: usize,
+    binary: Option<&'a [u8]>,
+    fetcher: &mut Fetcher,
+) -> Result<Cow<'a, [u8]>, LoadError> {
+    let buffer: document::Buffer = doc.get(index)?;
+    let place = place::<document::Buffer>(index);
+    match (buffer.uri, binary) {
+        (Some(uri), _) => fetcher.fetch(&place, &uri).map(Cow::Owned),
+        (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
+        (None, _) => Err(LoadError::structure(place, "it has no uri, and the file has no binary chunk for it")),
+    }
+}
