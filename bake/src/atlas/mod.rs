@@ -4,7 +4,61 @@
 //! and `page_uv = layout_uv * scale + offset`. Texel (x, y) of a page of `width` by `height` covers
 //! `[x, x + 1] / width` by `[y, y + 1] / height`; row 0 is v = 0, the top of the PNG and of a wgpu texture.
 
-use glam::{DVec3, Vec2};
+use crate::scene::Scene;
+use glam::{DVec2, DVec3, Vec2};
+
+mod arrange;
+mod build;
+mod coverage;
+mod existing;
+mod gutter;
+mod overlap;
+mod rectangles;
+mod samples;
+mod tile;
+mod unwrap;
+
+pub use build::{AtlasError, build};
+pub use gutter::{GutterTexel, gutter};
+pub use samples::{sample_page, surface_point};
+
+/// What an atlas is built to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AtlasSettings {
+    /// How dense texels lie. Time and memory of a bake grow with the number of texels, so with its square.
+    pub density: Density,
+    /// Longest side of a page, in texels; 16 to 16384, usually 1024 to 4096. Pages are cropped to what is used.
+    pub page_size_texels: u32,
+    /// Empty texels on every side of every chart: charts lie twice this apart. 1 is the least that a filter of two by two
+    /// texels needs, 2 the default; each level of mipmaps wants it doubled. Atlases of many small charts feel it most.
+    pub padding_texels: u32,
+    /// Most texels over all pages; a density that needs more is refused. A sample takes 16 bytes, so the default of 2^28
+    /// bounds the samples of a scene at 4 GiB if all were held at once.
+    pub most_texels: u64,
+    /// Whether a valid `TEXCOORD_1` is used as it is; otherwise everything is unwrapped.
+    pub keeps_existing: bool,
+}
+
+impl Default for AtlasSettings {
+    fn default() -> Self {
+        Self {
+            density: Density::Pages(1),
+            page_size_texels: 2048,
+            padding_texels: 2,
+            most_texels: 1 << 28,
+            keeps_existing: true,
+        }
+    }
+}
+
+/// How the density of texels is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Density {
+    /// This many texels a metre, on as many pages as it takes.
+    TexelsPerMetre(f64),
+    /// As dense as fits this many pages.
+    Pages(u32),
+}
 
 /// Where every instance's texels lie.
 #[derive(Debug, Clone)]
@@ -19,6 +73,21 @@ pub struct Atlas {
     pub texels_per_metre: f64,
     /// Charts over all pages.
     pub chart_count: usize,
+    /// What a user should know about how texels were dealt out: one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Atlas {
+    /// Where coordinates of an instance's layout lie on its page, in texels.
+    pub fn texel(&self, instance: usize, layout_uv: Vec2, page: PageSize) -> DVec2 {
+        let Placement { scale, offset, .. } = self.placements[instance];
+        (layout_uv.as_dvec2() * scale.as_dvec2() + offset.as_dvec2()) * page.as_dvec2()
+    }
+
+    /// Texels over all pages, covered or not.
+    pub fn texel_count(&self) -> u64 {
+        self.pages.iter().map(|p| p.texel_count() as u64).sum()
+    }
 }
 
 /// Size of a page.
@@ -28,6 +97,17 @@ pub struct PageSize {
     pub width: u32,
     /// In texels.
     pub height: u32,
+}
+
+impl PageSize {
+    /// Texels on the page.
+    pub fn texel_count(self) -> usize {
+        self.width as usize * self.height as usize
+    }
+
+    fn as_dvec2(self) -> DVec2 {
+        DVec2::new(f64::from(self.width), f64::from(self.height))
+    }
 }
 
 /// Unique coordinates of one mesh. Vertices on chart borders are split: `vertices[i]` is which vertex of the mesh the
@@ -53,7 +133,22 @@ pub enum LayoutOrigin {
     Unwrapped,
 }
 
-/// An instance's rectangle: `page_uv = layout_uv * scale + offset`.
+impl Layout {
+    /// The mesh as it is, all coordinates zero: for a mesh that has no texels.
+    fn empty(scene: &Scene, mesh: usize) -> Self {
+        let mesh = &scene.meshes[mesh];
+        let count = mesh.positions.len();
+        Self {
+            origin: LayoutOrigin::Unwrapped,
+            vertices: (0..count as u32).collect(),
+            uvs: vec![Vec2::ZERO; count],
+            indices: mesh.indices.clone(),
+        }
+    }
+}
+
+/// An instance's rectangle: `page_uv = layout_uv * scale + offset`. An instance whose surface is air
+/// ([`crate::scene::Alpha::Air`]) has no texels: see [`Placement::is_empty`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Index in [`Atlas::pages`].
@@ -62,6 +157,16 @@ pub struct Placement {
     pub scale: Vec2,
     /// In page coordinates.
     pub offset: Vec2,
+}
+
+impl Placement {
+    /// An instance without texels.
+    pub const EMPTY: Self = Self { page: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
+
+    /// Whether the instance has no texels.
+    pub fn is_empty(&self) -> bool {
+        self.scale == Vec2::ZERO
+    }
 }
 
 /// The texels of one page that stand for a surface point, in row order.

@@ -1,0 +1,303 @@
+//! Placing charts and tiles on pages.
+//!
+//! Theory: one density for the whole scene, in texels a metre, so that a shadow's edge is equally sharp everywhere. Given a
+//! density, each thing's size in texels is known and pages are packed; given pages instead, the density is found by
+//! bisection, packing anew for each guess.
+//!
+//! Practice:
+//! * A mesh under one instance is packed chart by chart among everything else, all of it on one page, because a
+//!   [`Placement`] names one page. A mesh under several is packed once, as a [`Tile`], and each instance owns a rectangle.
+//! * A chart longer than the page gets the density that fits it. A mesh too large for a page at the density asked for
+//!   gets less, down to what fits.
+//! * Things are dealt to pages largest first, each to the emptiest page.
+
+use super::rectangles::{self, Packed, Rectangle};
+use super::tile::{ChartBox, Tile, reference_scale};
+use super::unwrap::Charts;
+use super::{PageSize, Placement};
+use glam::{DVec2, Vec2};
+use rayon::prelude::*;
+
+/// A mesh to be placed, and every instance of it.
+pub(super) struct Item {
+    pub form: Form,
+    /// For each instance: its index in the scene, and metres a unit of object space.
+    pub instances: Vec<(usize, f64)>,
+    /// Share of the scene's density that this mesh gets: 1, or less if it would not fit a page.
+    pub share: f64,
+}
+
+/// What is known of a mesh's layout.
+pub(super) enum Form {
+    /// Charts still to be packed.
+    Charts(Charts),
+    /// A finished layout of the file's.
+    Given(Given),
+}
+
+/// A finished layout: the box of [0, 1] that it uses, and its scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Given {
+    /// Least coordinates.
+    pub low: DVec2,
+    /// Extent.
+    pub size: DVec2,
+    /// Length in object space of one unit of texture coordinates, on average.
+    pub object_per_uv: f64,
+    /// Area in texture coordinates.
+    pub uv_area: f64,
+}
+
+/// A rectangle on a page and what it is for.
+#[derive(Clone, Copy)]
+struct Piece {
+    rectangle: Rectangle,
+    item: usize,
+    part: Part,
+}
+
+#[derive(Clone, Copy)]
+enum Part {
+    /// A chart of a mesh that is packed loose.
+    Chart(usize, ChartBox),
+    /// An instance, the index being into [`Item::instances`], and its content in texels.
+    Instance(usize, DVec2),
+}
+
+/// Everything placed.
+pub(super) struct Plan {
+    pages: Vec<PlannedPage>,
+    /// One per item that is packed as a tile.
+    tiles: Vec<Option<Tile>>,
+    padding: u32,
+}
+
+struct PlannedPage {
+    size: PageSize,
+    pieces: Vec<Piece>,
+    packed: Packed,
+}
+
+/// What is placed, and on what.
+pub(super) struct Arrangement<'a> {
+    pub items: &'a [Item],
+    pub page_size_texels: u32,
+    pub padding_texels: u32,
+}
+
+impl Item {
+    /// Surface in the scene, over all instances.
+    pub fn area_m2(&self) -> f64 {
+        let object = match &self.form {
+            Form::Charts(charts) => charts.area(),
+            Form::Given(given) => given.uv_area * given.object_per_uv * given.object_per_uv,
+        };
+        object * self.instances.iter().map(|(_, k)| k * k).sum::<f64>()
+    }
+
+    /// Charts, each counted once however many instances show it. A layout of the file's counts as one.
+    pub fn chart_count(&self) -> usize {
+        match &self.form {
+            Form::Charts(charts) => charts.sizes.len(),
+            Form::Given(_) => 1,
+        }
+    }
+
+    fn is_loose(&self) -> bool {
+        matches!(self.form, Form::Charts(_)) && self.instances.len() == 1
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        self.instances.iter().map(|i| i.1).collect()
+    }
+}
+
+impl Arrangement<'_> {
+    /// Places everything at a density in texels a metre, on at most `pages` pages; `None` if it does not fit.
+    pub fn at_density(&self, texels_per_metre: f64, pages: u32) -> Option<Plan> {
+        self.place(texels_per_metre, pages, self.page_size_texels)
+    }
+
+    /// Places everything on the smallest page, or as few pages as it takes, up to `most`.
+    pub fn compactly(&self, texels_per_metre: f64, most: u32) -> Option<Plan> {
+        let (_, units) = self.units(texels_per_metre);
+        let area: f64 = units.iter().map(|u| u.1).sum();
+        let mut side = (area.sqrt() * 1.02).ceil().max(16.0);
+        while side < f64::from(self.page_size_texels) {
+            if let Some(plan) = self.place(texels_per_metre, 1, (side as u32).next_multiple_of(4)) {
+                return Some(plan);
+            }
+            side = side * 1.05 + 1.0;
+        }
+        let page = f64::from(self.page_size_texels);
+        let least = ((area / (page * page)).floor() as u32).max(1);
+        let tries = std::iter::successors(Some(least), |&n| Some(n + 1 + n / 8)).take_while(|&n| n <= most);
+        tries.into_iter().find_map(|pages| self.at_density(texels_per_metre, pages))
+    }
+
+    /// Whether one item fits a page by itself.
+    pub fn fits_alone(&self, item: usize, texels_per_metre: f64) -> bool {
+        let alone = Arrangement { items: std::slice::from_ref(&self.items[item]), ..*self };
+        let instances = self.items[item].instances.len() as u32;
+        alone.at_density(texels_per_metre, instances).is_some()
+    }
+
+    fn place(&self, texels_per_metre: f64, pages: u32, side: u32) -> Option<Plan> {
+        let (tiles, units) = self.units(texels_per_metre);
+        let dealt = deal(units, pages);
+        let place_page = |pieces: Vec<Piece>| {
+            let rectangles: Vec<_> = pieces.iter().map(|p| p.rectangle).collect();
+            let packed = rectangles::pack(&rectangles, side, side)?;
+            let size = PageSize { width: side, height: packed.height.next_multiple_of(4).min(side) };
+            Some(PlannedPage { size, pieces, packed })
+        };
+        let pages = dealt.into_par_iter().map(place_page).collect::<Option<Vec<_>>>()?;
+        Some(Plan { pages, tiles, padding: self.padding_texels })
+    }
+
+    /// Tiles, and what must stay together on a page, with its area in texels.
+    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<(Vec<Piece>, f64)>) {
+        let of_item = |(index, item): (usize, &Item)| self.units_of_item(index, item, texels_per_metre * item.share);
+        let (tiles, units): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
+        let area = |r: &Rectangle| f64::from(r.width) * f64::from(r.height);
+        let measured = |unit: Vec<Piece>| {
+            let texels = unit.iter().map(|p| area(&p.rectangle)).sum();
+            (unit, texels)
+        };
+        (tiles, units.into_iter().flatten().map(measured).collect())
+    }
+
+    fn units_of_item(&self, item: usize, what: &Item, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
+        let (padding, scales) = (self.padding_texels, what.scales());
+        let room = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
+        let rectangles = |contents: Vec<DVec2>| {
+            let piece = |(slot, content): (usize, DVec2)| {
+                let cells = (content - 1e-6).ceil().max(DVec2::ONE);
+                let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
+                let rectangle = Rectangle { width, height, may_turn: false };
+                vec![Piece { rectangle, item, part: Part::Instance(slot, content) }]
+            };
+            contents.into_iter().enumerate().map(piece).collect()
+        };
+        match &what.form {
+            Form::Given(given) => {
+                let content = |k: &f64| given.size * given.object_per_uv * k * texels_per_metre;
+                (None, rectangles(scales.iter().map(content).collect()))
+            }
+            Form::Charts(charts) if what.is_loose() => {
+                let piece = |(chart, &size): (usize, &DVec2)| {
+                    let chart_box = ChartBox::new(size, texels_per_metre * scales[0], room);
+                    Piece { rectangle: chart_box.rectangle(padding), item, part: Part::Chart(chart, chart_box) }
+                };
+                (None, vec![charts.sizes.iter().enumerate().map(piece).collect()])
+            }
+            Form::Charts(charts) => {
+                let reference = reference_scale(charts, &scales, texels_per_metre, padding);
+                let largest = scales.iter().copied().fold(reference, f64::max);
+                let tile = Tile::new(charts, texels_per_metre * reference, padding, room * reference / largest);
+                let contents = scales.iter().map(|k| tile.inner * (k.max(reference) / reference)).collect();
+                (Some(tile), rectangles(contents))
+            }
+        }
+    }
+}
+
+/// Deals units to pages, largest first, each to the page with most room. Empty pages are left out.
+fn deal(units: Vec<(Vec<Piece>, f64)>, pages: u32) -> Vec<Vec<Piece>> {
+    let mut order: Vec<usize> = (0..units.len()).collect();
+    order.sort_by(|&a, &b| units[b].1.total_cmp(&units[a].1).then(a.cmp(&b)));
+    let mut filled = vec![0.0f64; pages.max(1) as usize];
+    let mut dealt = vec![Vec::new(); filled.len()];
+    for index in order {
+        let emptiest = (0..filled.len()).min_by(|&a, &b| filled[a].total_cmp(&filled[b])).unwrap_or(0);
+        filled[emptiest] += units[index].1;
+        dealt[emptiest].extend_from_slice(&units[index].0);
+    }
+    dealt.retain(|pieces| !pieces.is_empty());
+    dealt
+}
+
+impl Plan {
+    /// Sizes of the pages.
+    pub fn page_sizes(&self) -> Vec<PageSize> {
+        self.pages.iter().map(|p| p.size).collect()
+    }
+
+    /// Placements by scene instance; those that nothing was planned for stay as they are.
+    pub fn write_placements(&self, items: &[Item], placements: &mut [Placement]) {
+        for (page, planned) in self.pages.iter().enumerate() {
+            for (piece, spot) in planned.pieces.iter().zip(&planned.packed.spots) {
+                let item = &items[piece.item];
+                let page_texels = planned.size.as_dvec2();
+                let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y)) + f64::from(self.padding);
+                let (slot, scale, offset) = match (piece.part, &item.form) {
+                    (Part::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
+                    (Part::Instance(slot, content), Form::Given(given)) => {
+                        let scale = content / given.size;
+                        (slot, scale / page_texels, (corner - given.low * scale) / page_texels)
+                    }
+                    (Part::Instance(slot, content), Form::Charts(_)) => {
+                        (slot, content / page_texels, corner / page_texels)
+                    }
+                };
+                placements[item.instances[slot].0] =
+                    Placement { page: page as u32, scale: scale.as_vec2(), offset: offset.as_vec2() };
+            }
+        }
+    }
+
+    /// For each item, the layout coordinates of its vertices; none for a layout that was given.
+    pub fn layout_uvs(&self, items: &[Item]) -> Vec<Vec<Vec2>> {
+        let homes = self.homes(items);
+        let of_item = |(index, item): (usize, &Item)| {
+            let Form::Charts(charts) = &item.form else { return Vec::new() };
+            let uv = |(&point, &chart): (&DVec2, &u32)| match &self.tiles[index] {
+                Some(tile) => tile.uv(chart as usize, point),
+                None => homes[index][chart as usize].uv(point),
+            };
+            charts.points.iter().zip(&charts.chart_of).map(|vertex| uv(vertex).as_vec2()).collect()
+        };
+        items.par_iter().enumerate().map(of_item).collect()
+    }
+
+    /// For each item, where its charts went; none for one that is not packed loose.
+    fn homes(&self, items: &[Item]) -> Vec<Vec<Home>> {
+        let count = |item: &Item| match &item.form {
+            Form::Charts(charts) if item.is_loose() => charts.sizes.len(),
+            _ => 0,
+        };
+        let mut homes: Vec<_> = items.iter().map(|item| vec![Home::default(); count(item)]).collect();
+        for planned in &self.pages {
+            for (piece, spot) in planned.pieces.iter().zip(&planned.packed.spots) {
+                if let Part::Chart(chart, chart_box) = piece.part {
+                    let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y)) + f64::from(self.padding);
+                    let page_texels = planned.size.as_dvec2();
+                    homes[piece.item][chart] = Home { corner, chart_box, is_turned: spot.is_turned, page_texels };
+                }
+            }
+        }
+        homes
+    }
+}
+
+/// Where a chart that is packed loose lies.
+#[derive(Clone, Copy)]
+struct Home {
+    corner: DVec2,
+    chart_box: ChartBox,
+    is_turned: bool,
+    page_texels: DVec2,
+}
+
+impl Home {
+    fn uv(&self, point: DVec2) -> DVec2 {
+        (self.corner + self.chart_box.texel(point, self.is_turned)) / self.page_texels
+    }
+}
+
+impl Default for Home {
+    fn default() -> Self {
+        let chart_box = ChartBox { density: 0.0, cells: (1, 1), slack: DVec2::ZERO };
+        Self { corner: DVec2::ZERO, chart_box, is_turned: false, page_texels: DVec2::ONE }
+    }
+}

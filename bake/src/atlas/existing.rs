@@ -1,0 +1,151 @@
+//! Judging the texture coordinates that a file brings.
+//!
+//! Theory: `TEXCOORD_1` is where authors put coordinates made for light maps, `TEXCOORD_0` never is one (it tiles, mirrors
+//! and overlaps). It serves as a layout if every surface point has texels of its own.
+//!
+//! Practice: a mesh's set is used as it is if all of it is finite and within [0, 1], if all but [`NO_AREA_SHARE`] of its
+//! surface has area in it, if no more than [`OVERLAP_SHARE`] of it overlaps, and if, at the size it gets on the page, few of
+//! its texels ([`CROWDED_SHARE`]) are wanted by two islands. Islands may be mirrored: reading does not care. Two uses are
+//! told apart: all meshes, each drawn once, share one [0, 1] without overlap ([`share_one_square`]), or each has its own.
+
+use super::PageSize;
+use super::arrange::Given;
+use super::coverage;
+use super::overlap::{Triangle, area2, overlap_more_than};
+use crate::scene::{Mesh, Scene};
+use glam::{DVec2, Vec2};
+use std::collections::HashMap;
+
+/// Share of the surface that may be collapsed to nothing in the set.
+const NO_AREA_SHARE: f64 = 1e-4;
+/// Share of the set's area that may be covered twice.
+const OVERLAP_SHARE: f64 = 1e-3;
+/// Share of texels that two islands may both touch.
+pub(super) const CROWDED_SHARE: f64 = 0.02;
+/// Marks a texel with two owners.
+const CROWDED: u32 = u32::MAX;
+/// How far outside [0, 1] is still rounding.
+const ROUNDING: f32 = 1e-5;
+
+/// Why a set cannot serve as a layout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Objection {
+    /// The mesh has no such set.
+    Missing,
+    /// NaN or infinite.
+    NotFinite,
+    /// Outside [0, 1]: it tiles.
+    Outside,
+    /// Some of the surface has no area in it.
+    NoArea,
+    /// Triangles overlap.
+    Overlap,
+}
+
+/// The mesh's `TEXCOORD_1`, if it can serve.
+pub(super) fn judge(mesh: &Mesh) -> Result<Given, Objection> {
+    let uvs = mesh.texcoords[1].as_deref().ok_or(Objection::Missing)?;
+    let used = mesh.indices.iter().map(|&i| uvs[i as usize]);
+    if !used.clone().all(|uv| uv.is_finite()) {
+        return Err(Objection::NotFinite);
+    }
+    let (least, most) = (Vec2::splat(-ROUNDING), Vec2::splat(1.0 + ROUNDING));
+    if !used.clone().all(|uv| uv.cmpge(least).all() && uv.cmple(most).all()) {
+        return Err(Objection::Outside);
+    }
+    let triangles = triangles(mesh, uvs);
+    let (object_area, uv_area) = areas(mesh, &triangles).ok_or(Objection::NoArea)?;
+    if overlap_more_than(&triangles, OVERLAP_SHARE) {
+        return Err(Objection::Overlap);
+    }
+    let low = used.clone().reduce(Vec2::min).unwrap_or_default().as_dvec2();
+    let high = used.reduce(Vec2::max).unwrap_or_default().as_dvec2();
+    Ok(Given { low, size: high - low, object_per_uv: (object_area / uv_area).sqrt(), uv_area })
+}
+
+/// Whether the meshes, all valid and each drawn once, use different parts of one [0, 1].
+pub(super) fn share_one_square(scene: &Scene, meshes: &[usize]) -> bool {
+    let mut all = Vec::new();
+    for &mesh in meshes {
+        let mesh = &scene.meshes[mesh];
+        let Some(uvs) = mesh.texcoords[1].as_deref() else { return false };
+        all.extend(triangles(mesh, uvs));
+    }
+    !overlap_more_than(&all, OVERLAP_SHARE)
+}
+
+fn triangles(mesh: &Mesh, uvs: &[Vec2]) -> Vec<Triangle> {
+    let corners = |t: &[u32]| [0, 1, 2].map(|k| uvs[t[k] as usize].as_dvec2());
+    mesh.indices.chunks_exact(3).map(corners).collect()
+}
+
+/// Summed area in object space and in texture coordinates; none if too much of the surface has no area in the set.
+fn areas(mesh: &Mesh, triangles: &[Triangle]) -> Option<(f64, f64)> {
+    let object: Vec<f64> = mesh.indices.chunks_exact(3).map(|t| object_area(mesh, t)).collect();
+    let uv: Vec<f64> = triangles.iter().map(|t| area2(t).abs() * 0.5).collect();
+    let (object_sum, uv_sum) = (object.iter().sum::<f64>(), uv.iter().sum::<f64>());
+    if object_sum <= 0.0 || uv_sum <= 0.0 {
+        return None;
+    }
+    // A triangle a thousand times coarser than the mean is as good as collapsed.
+    let collapsed = |&(o, u): &(&f64, &f64)| u / uv_sum < 1e-6 * (o / object_sum);
+    let lost: f64 = object.iter().zip(&uv).filter(collapsed).map(|(o, _)| o).sum();
+    (lost <= NO_AREA_SHARE * object_sum).then_some((object_sum, uv_sum))
+}
+
+fn object_area(mesh: &Mesh, triangle: &[u32]) -> f64 {
+    let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[triangle[k] as usize].as_dvec3());
+    (b - a).cross(c - a).length() * 0.5
+}
+
+/// Of the texels that the meshes' `TEXCOORD_1` touch on a page of this size, the share that two islands touch.
+/// `place` takes texture coordinates to texels.
+pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVec2) -> DVec2) -> f64 {
+    let mut owner: HashMap<u32, u32> = HashMap::new();
+    let (mut crowded, mut base) = (0usize, 0u32);
+    for mesh in meshes {
+        let Some(uvs) = mesh.texcoords[1].as_deref() else { continue };
+        let island = islands(mesh, uvs);
+        for (triangle, corners) in mesh.indices.chunks_exact(3).zip(triangles(mesh, uvs)) {
+            let corners = corners.map(&place);
+            let mine = base + island[triangle[0] as usize];
+            for y in coverage::rows(&corners, size.height) {
+                for x in coverage::columns(&corners, y, size.width) {
+                    let owner = owner.entry(y * size.width + x).or_insert(mine);
+                    if *owner != mine && *owner != CROWDED {
+                        *owner = CROWDED;
+                        crowded += 1;
+                    }
+                }
+            }
+        }
+        base += mesh.positions.len() as u32;
+    }
+    crowded as f64 / owner.len().max(1) as f64
+}
+
+/// For each vertex, the least vertex of its island. Vertices with one place in the set are one.
+fn islands(mesh: &Mesh, uvs: &[Vec2]) -> Vec<u32> {
+    fn find(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    let mut parent: Vec<u32> = (0..uvs.len() as u32).collect();
+    let mut at: HashMap<[u32; 2], u32> = HashMap::with_capacity(uvs.len());
+    let join = |parent: &mut Vec<u32>, a: u32, b: u32| {
+        let (a, b) = (find(parent, a), find(parent, b));
+        parent[a.max(b) as usize] = a.min(b);
+    };
+    for t in mesh.indices.chunks_exact(3) {
+        join(&mut parent, t[0], t[1]);
+        join(&mut parent, t[1], t[2]);
+        for &v in t {
+            let first = *at.entry((uvs[v as usize] + 0.0).to_array().map(f32::to_bits)).or_insert(v);
+            join(&mut parent, first, v);
+        }
+    }
+    (0..uvs.len() as u32).map(|v| find(&mut parent, v)).collect()
+}

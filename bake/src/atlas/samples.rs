@@ -1,0 +1,218 @@
+//! The surface point that each texel stands for.
+//!
+//! Theory: a texel should speak for the surface that falls within it. Where its centre lies on a triangle that is the
+//! point. A texel on a chart's border may be touched by triangles and yet have its centre off them; so may every texel of
+//! a chart thinner than a texel. It then takes the point nearest its centre on the nearest triangle that touches it.
+//!
+//! Practice: each page is cut into bands of rows, each band holds the best triangle so far of each texel, and triangles
+//! come in the order of their index, so that ties go to the lowest and the answer does not depend on threads.
+//!
+//! * Points never lie on a triangle's border, where a neighbour (the wall on a floor) also lies and a ray could start on
+//!   either side of it: a point taken off centre moves [`PULL_OFF_CENTRE`] of the way towards the middle of the part that
+//!   the triangle has in that texel; a centre within [`BORDER_TEXELS`] of the border moves [`PULL_CENTRE`] of it.
+//! * A triangle whose texture coordinates have no area takes only texels that no other triangle touches, and is sampled
+//!   at its middle.
+
+use super::coverage::{self, Corners};
+use super::overlap::clip;
+use super::{Atlas, PageSamples, PageSize, Sample, SurfacePoint};
+use crate::scene::{Geometry, Scene};
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// How far points that are not texel centres move into their triangle, as a share of the way to the middle of its part.
+const PULL_OFF_CENTRE: f64 = 0.25;
+/// The same for centres that lie almost on a border.
+const PULL_CENTRE: f64 = 0.125;
+/// What "almost" means, in texels.
+const BORDER_TEXELS: f64 = 1.0 / 64.0;
+/// Rows that are worked on at once; 64 rows of 4096 texels fill 2 MiB.
+const BAND_ROWS: u32 = 64;
+/// Added to the squared distance of triangles without area, so that every other triangle comes before them.
+const NO_AREA_PENALTY: f64 = 4.0;
+/// Area, in texels, below which a triangle counts as having none.
+const NO_AREA_TEXELS: f64 = 1e-12;
+
+/// A triangle on the page.
+struct Patch {
+    corners: Corners,
+    /// Twice the signed area, in texels.
+    area2: f64,
+    triangle: u32,
+}
+
+impl Patch {
+    fn has_area(&self) -> bool {
+        self.area2.abs() > NO_AREA_TEXELS
+    }
+
+    fn centroid(&self) -> DVec2 {
+        (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
+    }
+
+    /// Distance of `p` from the three lines through the edges, positive inside.
+    fn heights(&self, p: DVec2) -> [f64; 3] {
+        [0, 1, 2].map(|k| {
+            let edge = self.corners[(k + 1) % 3] - self.corners[k];
+            edge.perp_dot(p - self.corners[k]) * self.area2.signum() / edge.length().max(f64::MIN_POSITIVE)
+        })
+    }
+
+    fn contains(&self, p: DVec2) -> bool {
+        self.has_area()
+            && [0, 1, 2].iter().all(|&k| {
+                let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
+                (b - a).perp_dot(p - a) * self.area2.signum() >= 0.0
+            })
+    }
+
+    /// The nearest point to `p`, which lies outside.
+    fn nearest(&self, p: DVec2) -> DVec2 {
+        let on_edges = [0, 1, 2].map(|k| {
+            let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let along = (p - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
+            a + (b - a) * along.clamp(0.0, 1.0)
+        });
+        let [a, b, c] = on_edges.map(|q| q.distance_squared(p));
+        if a <= b && a <= c {
+            on_edges[0]
+        } else if b <= c {
+            on_edges[1]
+        } else {
+            on_edges[2]
+        }
+    }
+
+    /// What a texel ranks candidates by: less is better, zero where its centre is inside.
+    fn rank(&self, centre: DVec2) -> f64 {
+        if self.contains(centre) {
+            0.0
+        } else {
+            let penalty = if self.has_area() { 0.0 } else { NO_AREA_PENALTY };
+            penalty + self.nearest(centre).distance_squared(centre)
+        }
+    }
+
+    /// Weights of the second and third corner at `p`, inside or on the border of the triangle.
+    fn barycentric(&self, p: DVec2) -> [f32; 2] {
+        if !self.has_area() {
+            return [1.0 / 3.0; 2];
+        }
+        let [a, b, c] = self.corners;
+        let second = ((p - a).perp_dot(c - a) / self.area2).clamp(0.0, 1.0) as f32;
+        let third = ((b - a).perp_dot(p - a) / self.area2).clamp(0.0, 1.0) as f32;
+        [second, third.min(1.0 - second)]
+    }
+}
+
+/// Every covered texel of a page with its surface point. A texel is covered if some triangle touches it.
+pub fn sample_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32) -> PageSamples {
+    let Some(&size) = atlas.pages.get(page as usize) else {
+        return PageSamples::default();
+    };
+    let patches = patches_of_page(scene, geometry, atlas, page, size);
+    let bands = bands(&patches, size);
+    let samples = bands.par_iter().enumerate().map(|(band, members)| sample_band(&patches, members, band as u32, size));
+    PageSamples { samples: samples.collect::<Vec<_>>().concat() }
+}
+
+/// The sampled point in the scene.
+pub fn surface_point(scene: &Scene, geometry: &Geometry, sample: &Sample) -> SurfacePoint {
+    let triangle = sample.triangle as usize;
+    let instance = geometry.instance[triangle] as usize;
+    SurfacePoint {
+        position_m: geometry.point(triangle, sample.barycentric.map(f64::from)),
+        normal: geometry.normal(triangle),
+        is_double_sided: scene.material(instance).is_double_sided,
+        triangle: sample.triangle,
+    }
+}
+
+/// Triangles of all instances on the page, in the order of their index.
+fn patches_of_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, size: PageSize) -> Vec<Patch> {
+    let on_page = |&(_, p): &(usize, &super::Placement)| p.page == page && !p.is_empty();
+    let placed: Vec<_> = atlas.placements.iter().enumerate().filter(on_page).collect();
+    let of_instance = |(instance, _): (usize, &super::Placement)| {
+        let layout = &atlas.layouts[scene.instances[instance].mesh];
+        let first = geometry.first_triangle[instance];
+        layout.indices.chunks_exact(3).zip(first..).map(move |(corners, triangle)| {
+            let corners = [0, 1, 2].map(|k| atlas.texel(instance, layout.uvs[corners[k] as usize], size));
+            let area2 = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
+            Patch { corners, area2, triangle }
+        })
+    };
+    placed.into_par_iter().flat_map_iter(of_instance).collect()
+}
+
+/// For each band of rows, the patches that touch it.
+fn bands(patches: &[Patch], size: PageSize) -> Vec<Vec<u32>> {
+    let mut bands = vec![Vec::new(); size.height.div_ceil(BAND_ROWS) as usize];
+    for (index, patch) in patches.iter().enumerate() {
+        let rows = coverage::rows(&patch.corners, size.height);
+        for band in rows.start / BAND_ROWS..=(rows.end - 1) / BAND_ROWS {
+            bands[band as usize].push(index as u32);
+        }
+    }
+    bands
+}
+
+fn sample_band(patches: &[Patch], members: &[u32], band: u32, size: PageSize) -> Vec<Sample> {
+    let rows = band * BAND_ROWS..((band + 1) * BAND_ROWS).min(size.height);
+    let mut best = vec![(f32::INFINITY, 0u32); (rows.len()) * size.width as usize];
+    for &member in members {
+        let patch = &patches[member as usize];
+        let touched = coverage::rows(&patch.corners, size.height);
+        for y in touched.start.max(rows.start)..touched.end.min(rows.end) {
+            let row = &mut best[((y - rows.start) * size.width) as usize..][..size.width as usize];
+            for x in coverage::columns(&patch.corners, y, size.width) {
+                let slot = &mut row[x as usize];
+                if slot.0 > 0.0 {
+                    let rank = patch.rank(texel_centre(x, y)) as f32;
+                    if rank < slot.0 {
+                        *slot = (rank, member);
+                    }
+                }
+            }
+        }
+    }
+    let covered = best.iter().enumerate().filter(|(_, slot)| slot.0 < f32::INFINITY);
+    covered
+        .map(|(index, &(_, member))| {
+            let texel = rows.start * size.width + index as u32;
+            sample_texel(&patches[member as usize], texel, size)
+        })
+        .collect()
+}
+
+fn texel_centre(x: u32, y: u32) -> DVec2 {
+    DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
+}
+
+fn sample_texel(patch: &Patch, texel: u32, size: PageSize) -> Sample {
+    let (x, y) = (texel % size.width, texel / size.width);
+    let centre = texel_centre(x, y);
+    let (point, pull) = if !patch.contains(centre) {
+        (patch.nearest(centre), PULL_OFF_CENTRE)
+    } else if patch.heights(centre).iter().any(|&height| height < BORDER_TEXELS) {
+        (centre, PULL_CENTRE)
+    } else {
+        (centre, 0.0)
+    };
+    let point = if pull > 0.0 { point.lerp(middle_in_texel(patch, x, y), pull) } else { point };
+    Sample { texel, triangle: patch.triangle, barycentric: patch.barycentric(point) }
+}
+
+/// The middle of the triangle's part within a texel; of the whole triangle where they hardly touch.
+fn middle_in_texel(patch: &Patch, x: u32, y: u32) -> DVec2 {
+    let low = DVec2::new(f64::from(x), f64::from(y));
+    let mut part = patch.corners.to_vec();
+    for (normal, offset) in
+        [(DVec2::X, low.x), (DVec2::Y, low.y), (DVec2::NEG_X, -low.x - 1.0), (DVec2::NEG_Y, -low.y - 1.0)]
+    {
+        part = clip(&part, normal, offset);
+    }
+    if part.is_empty() {
+        return patch.centroid();
+    }
+    part.iter().sum::<DVec2>() / part.len() as f64
+}

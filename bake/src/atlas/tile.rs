@@ -1,0 +1,101 @@
+//! Packing the charts of one mesh, once, for all of its instances.
+//!
+//! Theory: every instance of a mesh shows the same layout, each in a rectangle of its own and at its own scale. The gaps
+//! between charts scale with the rectangle, so the layout must be padded for the smallest one.
+//!
+//! Practice: where scales differ widely, padding for the smallest would waste most of the largest's rectangle; then it is
+//! cheaper to show the small ones larger than they need. [`reference_scale`] weighs the two.
+
+use super::rectangles::{self, Packed, Rectangle, Spot};
+use super::unwrap::Charts;
+use glam::DVec2;
+
+/// A chart at some density: its content box in whole texels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ChartBox {
+    /// Texels a unit of object space; lower than asked where the chart would not fit a page.
+    pub density: f64,
+    /// Whole texels that hold the chart.
+    pub cells: (u32, u32),
+    /// What is left of those texels, halved: charts sit in the middle of their box.
+    pub slack: DVec2,
+}
+
+impl ChartBox {
+    pub fn new(size: DVec2, density: f64, limit_texels: f64) -> Self {
+        let longest = size.max_element() * density;
+        let density = if longest > limit_texels { density * limit_texels / longest } else { density };
+        let cells = (size * density - 1e-6).ceil().max(DVec2::ONE).min(DVec2::splat(limit_texels.ceil()));
+        Self { density, cells: (cells.x as u32, cells.y as u32), slack: (cells - size * density) * 0.5 }
+    }
+
+    pub fn rectangle(&self, padding: u32) -> Rectangle {
+        Rectangle { width: self.cells.0 + 2 * padding, height: self.cells.1 + 2 * padding, may_turn: true }
+    }
+
+    /// Texel, from the corner of the padded rectangle's content, of a point of the chart. Turning never mirrors.
+    pub fn texel(&self, point: DVec2, is_turned: bool) -> DVec2 {
+        let texel = point * self.density + self.slack;
+        if is_turned { DVec2::new(f64::from(self.cells.1) - texel.y, texel.x) } else { texel }
+    }
+}
+
+/// A mesh's charts in a rectangle of their own.
+#[derive(Debug, Clone)]
+pub(super) struct Tile {
+    pub boxes: Vec<ChartBox>,
+    pub spots: Vec<Spot>,
+    /// Texels within the outer padding, at the reference scale.
+    pub inner: DVec2,
+}
+
+impl Tile {
+    /// Packs at `density` texels a unit of object space. `limit_texels` bounds a chart's longer side.
+    pub fn new(charts: &Charts, density: f64, padding: u32, limit_texels: f64) -> Self {
+        let boxes: Vec<_> = charts.sizes.iter().map(|&size| ChartBox::new(size, density, limit_texels)).collect();
+        let rectangles: Vec<_> = boxes.iter().map(|b| b.rectangle(padding)).collect();
+        let (width, packed) = pack_compactly(&rectangles);
+        let pad = f64::from(2 * padding);
+        let inner = DVec2::new(f64::from(width) - pad, f64::from(packed.height) - pad).max(DVec2::ONE);
+        Self { boxes, spots: packed.spots, inner }
+    }
+
+    /// Where a chart's point lies, in [0, 1] of the tile's inner box.
+    pub fn uv(&self, chart: usize, point: DVec2) -> DVec2 {
+        let spot = self.spots[chart];
+        let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y));
+        ((corner + self.boxes[chart].texel(point, spot.is_turned)) / self.inner).clamp(DVec2::ZERO, DVec2::ONE)
+    }
+}
+
+/// Tries a few widths around the square and keeps the smallest box.
+fn pack_compactly(rectangles: &[Rectangle]) -> (u32, Packed) {
+    let area: f64 = rectangles.iter().map(|r| f64::from(r.width) * f64::from(r.height)).sum();
+    let widest = rectangles.iter().map(|r| r.width.max(r.height)).max().unwrap_or(1);
+    let tries = [0.8, 0.9, 1.0, 1.1].map(|k| ((area.sqrt() * k).ceil() as u32).max(widest));
+    let fits = tries.iter().filter_map(|&width| {
+        let packed = rectangles::pack(rectangles, width, u32::MAX / 2)?;
+        let used =
+            rectangles.iter().zip(&packed.spots).map(|(r, s)| s.x + if s.is_turned { r.height } else { r.width });
+        Some((used.max().unwrap_or(1), packed))
+    });
+    let area = |(width, packed): &(u32, Packed)| u64::from(*width) * u64::from(packed.height);
+    fits.min_by_key(area).unwrap_or_default()
+}
+
+/// The scale that a mesh's layout is padded for; instances below it are shown at it. `density` is in texels a metre.
+pub(super) fn reference_scale(charts: &Charts, scales: &[f64], density: f64, padding: u32) -> f64 {
+    let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = scales.iter().copied().fold(0.0, f64::max);
+    let cost = |reference: f64| {
+        let padded = |size: &DVec2| {
+            let cells = (*size * density * reference).max(DVec2::ONE) + f64::from(2 * padding);
+            cells.x * cells.y
+        };
+        let tile: f64 = charts.sizes.iter().map(padded).sum();
+        tile * scales.iter().map(|k| (k.max(reference) / reference).powi(2)).sum::<f64>()
+    };
+    let halvings = std::iter::successors(Some(largest), |k| Some(k * 0.5)).take_while(|&k| k > least).take(40);
+    let candidates = halvings.chain(std::iter::once(least));
+    candidates.min_by(|&a, &b| cost(a).total_cmp(&cost(b))).unwrap_or(1.0)
+}

@@ -1,0 +1,227 @@
+//! Cutting a mesh into charts and flattening them.
+//!
+//! Theory: segmentation into charts within a normal cone, each flattened by least squares conformal maps (Lévy et al.,
+//! 2002) and as-rigid-as-possible refinement (Liu et al., 2008). All of that is the `uvunwrap` crate's.
+//!
+//! Practice:
+//! * A mesh is unwrapped alone and without regard to its size on any page, so once, in parallel, and cancellable; its
+//!   charts are measured here and packed by [`super::arrange`].
+//! * Positions are taken relative to the middle of the mesh in `f64`, and brought to the size of one by a power of two, so
+//!   that map coordinates and odd units neither lose digits nor meet any absolute epsilon.
+//! * A height field (every normal well within 90 degrees of one axis) is flattened by projection: least squares on a
+//!   terrain of 100,000 triangles takes half a minute, and gains nothing. Other large meshes get a limit on chart area, for
+//!   the time it takes grows faster than the chart.
+//! * Triangles too thin for `f32` texture coordinates collapse onto a corner of a neighbour. Should all else fail, every
+//!   triangle is a chart of its own.
+
+use crate::scene::Mesh;
+use glam::{DVec2, DVec3};
+use uvunwrap::{Density, Error, MeshInput, Options, OutputMesh, Packing};
+
+/// Meshes from this size on are tried as a height field.
+const HEIGHT_FIELD_TRIANGLES: usize = 1_000;
+/// Least cosine between a height field's axis and its triangles' normals: their texels stretch by at most its inverse.
+const HEIGHT_FIELD_COS: f64 = 0.4;
+/// About how many triangles a chart of a large mesh may have.
+const CHART_TRIANGLES: usize = 4_000;
+
+/// Marks a vertex that no chart has yet.
+const STRAY: u32 = u32::MAX;
+/// About how many pairs may be compared to find homes for stray vertices.
+const STRAY_WORK: usize = 100_000_000;
+
+/// A mesh in charts, each flattened in its own frame.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Charts {
+    /// For each new vertex, the mesh vertex it copies.
+    pub vertices: Vec<u32>,
+    /// Three per triangle of the mesh, in its order, into `vertices`.
+    pub indices: Vec<u32>,
+    /// For each new vertex, its place in its chart's box, in units of object space; the box starts at the origin.
+    pub points: Vec<DVec2>,
+    /// For each new vertex, its chart.
+    pub chart_of: Vec<u32>,
+    /// Extent of each chart's box, in units of object space.
+    pub sizes: Vec<DVec2>,
+}
+
+impl Charts {
+    /// Area of all triangles, flattened.
+    pub fn area(&self) -> f64 {
+        let area = |t: &[u32]| {
+            let [a, b, c] = [0, 1, 2].map(|k| self.points[t[k] as usize]);
+            (b - a).perp_dot(c - a).abs() * 0.5
+        };
+        self.indices.chunks_exact(3).map(area).sum()
+    }
+}
+
+/// Unwraps a mesh. `keep_going` is asked now and then; `None` says that it answered false.
+pub(super) fn unwrap(mesh: &Mesh, keep_going: &(dyn Fn() -> bool + Sync)) -> Option<Charts> {
+    if mesh.indices.is_empty() {
+        return Some(Charts::default());
+    }
+    let (positions, unit) = normalise(mesh);
+    match generate(mesh, &positions, keep_going) {
+        Ok((output, extent)) => Some(measure(mesh, &output, extent * unit)),
+        Err(Error::Cancelled) => None,
+        Err(_) => Some(each_triangle_alone(mesh)),
+    }
+}
+
+/// Positions around the middle of the mesh, at most 1 in any axis, and the power of two they were divided by.
+fn normalise(mesh: &Mesh) -> (Vec<[f32; 3]>, f64) {
+    let corners = mesh.indices.iter().map(|&i| mesh.positions[i as usize]);
+    let low = corners.clone().reduce(|a, b| a.min(b)).unwrap_or_default();
+    let high = corners.reduce(|a, b| a.max(b)).unwrap_or_default();
+    let centre = ((low.as_dvec3() + high.as_dvec3()) * 0.5).as_vec3().as_dvec3();
+    let extent = (high.as_dvec3() - low.as_dvec3()).max_element();
+    let unit = if extent > 0.0 { extent.log2().ceil().exp2() } else { 1.0 };
+    let place = |p: &glam::Vec3| ((p.as_dvec3() - centre) / unit).as_vec3().clamp_length_max(4.0).to_array();
+    (mesh.positions.iter().map(place).collect(), unit)
+}
+
+/// Runs `uvunwrap`; returns its mesh, and the size of the box that its coordinates are relative to.
+fn generate(
+    mesh: &Mesh,
+    positions: &[[f32; 3]],
+    keep_going: &(dyn Fn() -> bool + Sync),
+) -> Result<(OutputMesh, DVec2), Error> {
+    let count = mesh.triangle_count() as f64;
+    let area = surface_area(positions, &mesh.indices);
+    let projected = height_field(positions, &mesh.indices);
+    let input = MeshInput { existing_uvs: projected.as_deref(), ..MeshInput::new(positions, &mesh.indices) };
+    let large = mesh.triangle_count() > 2 * CHART_TRIANGLES;
+    let options = Options {
+        max_chart_area: if large { (area * CHART_TRIANGLES as f64 / count) as f32 } else { 0.0 },
+        density: Density::Fixed { texels_per_unit: packing_density(count, area), page_size: None },
+        padding: 0,
+        packing: Packing::Fast,
+        ..Options::default()
+    };
+    let mut atlas = uvunwrap::generate_with_progress(&[input], &options, |_| keep_going())?;
+    let extent = DVec2::new(f64::from(atlas.width), f64::from(atlas.height)) / f64::from(atlas.texels_per_unit);
+    Ok((atlas.meshes.swap_remove(0), extent))
+}
+
+/// A density at which `uvunwrap`'s own packing, which is not used, costs little: four texels a triangle.
+fn packing_density(triangles: f64, area: f64) -> f32 {
+    let density = (4.0 * triangles / area).sqrt() as f32;
+    if density.is_finite() && density > 0.0 { density.min(1e6) } else { 1.0 }
+}
+
+fn surface_area(positions: &[[f32; 3]], indices: &[u32]) -> f64 {
+    indices.chunks_exact(3).map(|t| cross(positions, t).length() * 0.5).sum()
+}
+
+/// Normal of a triangle, twice its area long.
+fn cross(positions: &[[f32; 3]], triangle: &[u32]) -> DVec3 {
+    let [a, b, c] = [0, 1, 2].map(|k| DVec3::from(positions[triangle[k] as usize].map(f64::from)));
+    (b - a).cross(c - a)
+}
+
+/// Coordinates by projection along the mean normal, if the mesh is a height field.
+fn height_field(positions: &[[f32; 3]], indices: &[u32]) -> Option<Vec<[f32; 2]>> {
+    if indices.len() < 3 * HEIGHT_FIELD_TRIANGLES {
+        return None;
+    }
+    let axis = indices.chunks_exact(3).map(|t| cross(positions, t)).sum::<DVec3>().try_normalize()?;
+    let faces_axis = |t: &[u32]| {
+        let normal = cross(positions, t);
+        normal.dot(axis) >= HEIGHT_FIELD_COS * normal.length()
+    };
+    if !indices.chunks_exact(3).all(faces_axis) {
+        return None;
+    }
+    let (u, v) = axis.any_orthonormal_pair();
+    let project = |p: &[f32; 3]| {
+        let p = DVec3::from(p.map(f64::from));
+        [u.dot(p) as f32, v.dot(p) as f32]
+    };
+    Some(positions.iter().map(project).collect())
+}
+
+/// Sorts the output into charts with boxes of their own. `extent` is the size of its page in units of object space.
+fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
+    let first = output.vertices.iter().filter_map(|v| v.chart).min().unwrap_or(0);
+    let count = output.vertices.iter().filter_map(|v| v.chart).max().map_or(0, |last| last - first + 1);
+    if count == 0 {
+        return one_point(mesh);
+    }
+    let mut low = vec![DVec2::INFINITY; count as usize];
+    let mut high = vec![DVec2::NEG_INFINITY; count as usize];
+    let mut charts = Charts { indices: output.indices.clone(), ..Charts::default() };
+    for vertex in &output.vertices {
+        let point = DVec2::from(vertex.uv.map(f64::from)) * extent;
+        let chart = vertex.chart.map_or(STRAY, |c| c - first);
+        charts.vertices.push(vertex.xref);
+        charts.points.push(point);
+        charts.chart_of.push(chart);
+        if let Some(low) = low.get_mut(chart as usize) {
+            *low = low.min(point);
+            high[chart as usize] = high[chart as usize].max(point);
+        }
+    }
+    settle_strays(mesh, &mut charts);
+    for (point, &chart) in charts.points.iter_mut().zip(&charts.chart_of) {
+        *point -= low[chart as usize];
+    }
+    charts.sizes = low.iter().zip(&high).map(|(l, h)| (*h - *l).max(DVec2::ZERO)).collect();
+    charts
+}
+
+/// Vertices of triangles without area and without charted neighbours go to where the nearest charted vertex lies, a whole
+/// triangle to one point, so that it does not stretch across charts.
+fn settle_strays(mesh: &Mesh, charts: &mut Charts) {
+    let (charted, strays): (Vec<u32>, Vec<u32>) =
+        (0..charts.vertices.len() as u32).partition(|&v| charts.chart_of[v as usize] != STRAY);
+    let stride = (strays.len() * charted.len() / STRAY_WORK).max(1);
+    let place = |charts: &Charts, v: u32| mesh.positions[charts.vertices[v as usize] as usize].as_dvec3();
+    for corner in (0..charts.indices.len()).step_by(3) {
+        let triangle = [0, 1, 2].map(|k| charts.indices[corner + k]);
+        if triangle.iter().all(|&v| charts.chart_of[v as usize] != STRAY) {
+            continue;
+        }
+        let settled = triangle.iter().copied().find(|&v| charts.chart_of[v as usize] != STRAY);
+        let from = place(charts, triangle[0]);
+        let distance = |v: &u32| place(charts, *v).distance_squared(from);
+        let nearest = || charted.iter().copied().step_by(stride).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let Some(target) = settled.or_else(nearest) else { return };
+        for v in triangle.map(|v| v as usize) {
+            if charts.chart_of[v] == STRAY {
+                charts.points[v] = charts.points[target as usize];
+                charts.chart_of[v] = charts.chart_of[target as usize];
+            }
+        }
+    }
+}
+
+/// A mesh without any area: all of it is one point.
+fn one_point(mesh: &Mesh) -> Charts {
+    Charts {
+        vertices: (0..mesh.positions.len() as u32).collect(),
+        indices: mesh.indices.clone(),
+        points: vec![DVec2::ZERO; mesh.positions.len()],
+        chart_of: vec![0; mesh.positions.len()],
+        sizes: vec![DVec2::ZERO],
+    }
+}
+
+/// Every triangle a chart, its first edge along u.
+fn each_triangle_alone(mesh: &Mesh) -> Charts {
+    let mut charts = Charts::default();
+    for (chart, triangle) in mesh.indices.chunks_exact(3).enumerate() {
+        let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[triangle[k] as usize].as_dvec3());
+        let along = (b - a).normalize_or_zero();
+        let third = DVec2::new((c - a).dot(along), (c - a).reject_from_normalized(along).length());
+        let points = [DVec2::ZERO, DVec2::new((b - a).length(), 0.0), third];
+        let low = points.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
+        let high = points.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p));
+        charts.indices.extend((0..3).map(|k| charts.vertices.len() as u32 + k));
+        charts.vertices.extend(triangle);
+        charts.points.extend(points.map(|p| p - low));
+        charts.chart_of.extend([chart as u32; 3]);
+        charts.sizes.push(high - low);
+    }
+    charts
+}
