@@ -1,9 +1,9 @@
 //! A bake from end to end: the flow of the crate, one stage after the other.
 
-use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, Density};
+use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, PageSamples};
 use crate::disk::manifest::{self, ArcEntry, InstanceEntry, Manifest, PathEntry, StageSeconds, Stats};
 use crate::disk::write::{SCENE_FILE, SetWriter, WriteError, check_target};
-use crate::glb;
+use crate::glb::{self, GlbTooLarge};
 use crate::loss::LossTally;
 use crate::maps::{Lane, LaneMaps, LayerMaps, PageEncoder, PageMaps};
 use crate::plan::{Effect, EffectPlan};
@@ -34,6 +34,9 @@ pub enum BakeError {
     /// The scene cannot be laid out.
     #[error(transparent)]
     Atlas(#[from] AtlasError),
+    /// The scene cannot be written again.
+    #[error(transparent)]
+    TooLarge(#[from] GlbTooLarge),
     /// The set cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -84,11 +87,7 @@ pub struct Prepared {
 }
 
 /// Reads the scene and decides what to bake.
-pub fn prepare(
-    scene_file: &Path,
-    settings: &BakeSettings,
-    progress: &dyn Progress,
-) -> Result<Prepared, BakeError> {
+pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progress) -> Result<Prepared, BakeError> {
     progress.start(Stage::Load, 0);
     let started = Instant::now();
     let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
@@ -127,11 +126,9 @@ fn bake_prepared(
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
     let Prepared { scene, path, plan, .. } = prepared;
-    check_memory(scene, settings, 1, settings.page_size_texels)?;
+    check_memory(scene, settings, settings.page_size_texels)?;
     let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
     let atlas = timed(&mut seconds.unwrap, || unwrap(scene, settings, progress))?;
-    let widest = atlas.pages.iter().map(|p| p.width.max(p.height)).max().unwrap_or(0);
-    check_memory(scene, settings, 1, widest)?;
 
     progress.start(Stage::Bvh, 0);
     let geometry = Geometry::new(scene);
@@ -141,43 +138,37 @@ fn bake_prepared(
     });
 
     let mut writer = SetWriter::begin(target, force)?;
-    let mut pages = PageBaker {
-        scene,
-        geometry: &geometry,
-        atlas: &atlas,
-        settings,
-        engine: engine.as_ref().map(|e| e as &dyn Engine),
-        progress,
-        seconds,
-        stats: Stats::default(),
-        loss: LossTally::default(),
-    };
-    let mut atlases = Vec::with_capacity(atlas.pages.len());
-    for index in 0..atlas.pages.len() {
-        let maps = pages.bake(index);
-        progress.start(Stage::Write, 0);
-        let entry = timed(&mut pages.seconds.write, || writer.write_page(index, &maps, settings.bits))?;
-        atlases.push(entry);
-    }
-    let PageBaker { mut seconds, mut stats, loss, .. } = pages;
-    let written = glb::write_glb(scene, &atlas.layouts);
-    timed(&mut seconds.write, || writer.write_scene(&written.bytes))?;
+    let engine = engine.as_ref().map(|e| e as &dyn Engine);
+    let mut pages = PageBaker::new(scene, &geometry, &atlas, settings, engine, progress, seconds);
+    let atlases = pages.bake_all(&mut writer)?;
+    let written = glb::write_glb(scene, &atlas.layouts)?;
+    timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
-    stats.triangles = scene.triangle_count() as u64;
-    stats.dropped_triangles = scene.dropped.total();
-    stats.charts = atlas.chart_count as u64;
-    stats.engine = engine.as_ref().map_or("none".into(), |e| e.name());
+    let PageBaker { mut stats, loss, .. } = pages;
     stats.bytes = writer.bytes();
-    stats.threads = rayon::current_num_threads();
-    stats.seconds = seconds;
+    let duration_min = path.as_ref().map_or(0.0, |p| p.duration_min);
     let manifest = Manifest {
+        stats,
+        atlases,
+        instances: instance_entries(scene, &atlas, &written.places),
+        error: loss.finish(duration_min),
+        ..manifest_of(prepared, &atlas, settings)
+    };
+    writer.finish(&manifest)?;
+    let mut warnings = prepared.warnings.clone();
+    warnings.extend(atlas.warnings.iter().cloned());
+    warnings.extend(loss_warning(&manifest, settings));
+    Ok(BakeReport { manifest, warnings })
+}
+
+/// What the manifest says of the request; the rest is left empty.
+fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSettings) -> Manifest {
+    let Prepared { scene, path, plan, .. } = prepared;
+    Manifest {
         format: manifest::FORMAT.into(),
         version: manifest::VERSION,
         generator: concat!("sunbake ", env!("CARGO_PKG_VERSION")).into(),
-        source: manifest::SourceEntry {
-            file: scene.source.file_name.clone(),
-            sha256: scene.source.sha256.clone(),
-        },
+        source: manifest::SourceEntry { file: scene.source.file_name.clone(), sha256: scene.source.sha256.clone() },
         scene: manifest::SceneEntry {
             file: SCENE_FILE.into(),
             centre_m: scene.centre_m.to_array(),
@@ -185,17 +176,12 @@ fn bake_prepared(
         },
         path: path.as_ref().map(path_entry),
         bits: settings.bits.count(),
-        atlases,
-        instances: instance_entries(scene, &atlas, &written.instances),
+        atlases: Vec::new(),
+        instances: Vec::new(),
         effects: plan.entries(),
-        stats,
-        error: loss.finish(path.as_ref().map_or(0.0, |p| p.duration_min)),
-    };
-    writer.finish(&manifest)?;
-    let mut warnings = prepared.warnings.clone();
-    warnings.extend(atlas.warnings.iter().cloned());
-    warnings.extend(loss_warning(&manifest, settings));
-    Ok(BakeReport { manifest, warnings })
+        stats: Stats::default(),
+        error: manifest::ErrorEntry::default(),
+    }
 }
 
 fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
@@ -205,11 +191,7 @@ fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     value
 }
 
-fn sun_path(
-    settings: &BakeSettings,
-    scene: &Scene,
-    warnings: &mut Vec<String>,
-) -> Result<Option<SunPath>, BakeError> {
+fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) -> Result<Option<SunPath>, BakeError> {
     let request = match (&settings.sun, scene.sun_direction) {
         (SunRequest::Keyed { json, north_deg }, _) => return Ok(Some(sun::parse_keyed(json, *north_deg)?)),
         (SunRequest::SceneOr(_), Some(direction)) => {
@@ -238,6 +220,8 @@ fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Re
         density: settings.density,
         page_size_texels: settings.page_size_texels,
         padding_texels: settings.padding_texels,
+        most_texels: settings.max_memory_bytes / BYTES_PER_SAMPLE,
+        ..AtlasSettings::default()
     };
     atlas::build(scene, &atlas_settings, &|share| {
         let now = (share * 1000.0) as u64;
@@ -253,8 +237,8 @@ const BYTES_PER_SAMPLE: u64 = 100;
 /// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
-fn check_memory(scene: &Scene, settings: &BakeSettings, pages: u64, page_size_texels: u32) -> Result<(), BakeError> {
-    let texels = pages * u64::from(page_size_texels).pow(2);
+fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -> Result<(), BakeError> {
+    let texels = u64::from(page_size_texels).pow(2);
     // Codes are held twice while they are written; two layers are what a scene usually needs.
     let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2;
     let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
@@ -277,23 +261,54 @@ struct PageBaker<'a> {
     settings: &'a BakeSettings,
     engine: Option<&'a dyn Engine>,
     progress: &'a dyn Progress,
-    seconds: StageSeconds,
     stats: Stats,
     loss: LossTally,
 }
 
-impl PageBaker<'_> {
+impl<'a> PageBaker<'a> {
+    fn new(
+        scene: &'a Scene,
+        geometry: &'a Geometry,
+        atlas: &'a Atlas,
+        settings: &'a BakeSettings,
+        engine: Option<&'a dyn Engine>,
+        progress: &'a dyn Progress,
+        seconds: StageSeconds,
+    ) -> Self {
+        let stats = Stats {
+            triangles: scene.triangle_count() as u64,
+            dropped_triangles: scene.dropped.total(),
+            charts: atlas.chart_count as u64,
+            engine: engine.map_or("none".into(), Engine::name),
+            threads: rayon::current_num_threads(),
+            seconds,
+            ..Stats::default()
+        };
+        Self { scene, geometry, atlas, settings, engine, progress, stats, loss: LossTally::default() }
+    }
+
+    fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<manifest::AtlasEntry>, WriteError> {
+        let mut entries = Vec::with_capacity(self.atlas.pages.len());
+        for index in 0..self.atlas.pages.len() {
+            let maps = self.bake(index);
+            self.progress.start(Stage::Write, 0);
+            let write = || writer.write_page(index, &maps, self.settings.bits);
+            entries.push(timed(&mut self.stats.seconds.write, write)?);
+        }
+        Ok(entries)
+    }
+
     fn bake(&mut self, index: usize) -> PageMaps {
         let size = self.atlas.pages[index];
         let started = Instant::now();
-        let samples = atlas::sample_page(self.scene, self.geometry, self.atlas, index as u32).samples;
-        self.seconds.unwrap += started.elapsed().as_secs_f64();
-        self.stats.texels += samples.len() as u64;
+        let samples = atlas::sample_page(self.scene, self.geometry, self.atlas, index as u32);
+        self.stats.seconds.unwrap += started.elapsed().as_secs_f64();
+        self.stats.texels += samples.samples.len() as u64;
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
         let lanes = match self.engine {
             None => Vec::new(),
             Some(engine) => {
-                let (tables, work) = self.find_lit(engine, &samples);
+                let (tables, work) = self.find_lit(engine, &samples.samples);
                 self.stats.rays += work.rays;
                 vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &tables) }]
             }
@@ -304,29 +319,30 @@ impl PageBaker<'_> {
     fn find_lit(&mut self, engine: &dyn Engine, samples: &[atlas::Sample]) -> (Vec<IntervalTable>, Work) {
         self.progress.start(Stage::Visibility, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
-        timed(&mut self.seconds.visibility, || {
+        timed(&mut self.stats.seconds.visibility, || {
             let point = |i: usize| atlas::surface_point(scene, geometry, &samples[i]);
             visibility::find_lit(engine, samples.len(), point, |count| progress.advance(count as u64))
         })
     }
 
-    fn encode(&mut self, page: usize, samples: &[atlas::Sample], tables: &[IntervalTable]) -> Vec<LayerMaps> {
-        self.progress.start(Stage::Encode, samples.len() as u64);
+    fn encode(&mut self, page: usize, samples: &PageSamples, tables: &[IntervalTable]) -> Vec<LayerMaps> {
+        let PageSamples { samples: texels } = samples;
+        self.progress.start(Stage::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let texel_count = size.width as usize * size.height as usize;
         let mut encoder = PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap);
-        for (sample, lit) in samples.iter().zip(tables.iter().flat_map(IntervalTable::iter)) {
+        for (sample, lit) in texels.iter().zip(tables.iter().flat_map(IntervalTable::iter)) {
             let found = lit.as_slice().len() as u64;
             self.stats.intervals += found;
             self.stats.most_intervals = self.stats.most_intervals.max(found);
             let loss = encoder.set(sample.texel as usize, &lit);
             self.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
         }
-        for copy in atlas::gutter(self.atlas, page as u32, samples, self.settings.padding_texels) {
-            encoder.copy(copy.texel as usize, copy.source_texel as usize);
+        for copy in atlas::gutter(size, samples, self.settings.padding_texels) {
+            encoder.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
         }
-        self.seconds.encode += started.elapsed().as_secs_f64();
+        self.stats.seconds.encode += started.elapsed().as_secs_f64();
         encoder.finish()
     }
 }

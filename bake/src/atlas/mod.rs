@@ -12,6 +12,7 @@ mod build;
 mod coverage;
 mod existing;
 mod gutter;
+mod of_set;
 mod overlap;
 mod rectangles;
 mod samples;

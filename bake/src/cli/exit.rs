@@ -4,7 +4,7 @@ use std::error::Error;
 use std::process::ExitCode;
 use sunbake::BakeError;
 use sunbake::disk::read::ReadError;
-use sunbake::scene::LoadErrorClass;
+use sunbake::scene::ErrorClass;
 
 /// A failure with its exit code.
 #[derive(Debug)]
@@ -31,10 +31,10 @@ impl From<BakeError> for Failure {
     fn from(error: BakeError) -> Self {
         let code = match &error {
             BakeError::Load(load) => match load.class() {
-                LoadErrorClass::Io => 2,
-                LoadErrorClass::BadInput | LoadErrorClass::Unsupported => 3,
+                ErrorClass::Io => 2,
+                ErrorClass::BadInput | ErrorClass::Unsupported => 3,
             },
-            BakeError::Write(_) => 2,
+            BakeError::Write(_) | BakeError::TooLarge(_) => 2,
             BakeError::Day(_) => 1,
             BakeError::Keyed(_) | BakeError::Light(_) | BakeError::Atlas(_) | BakeError::Memory { .. } => 3,
             BakeError::Threads { .. } => 5,

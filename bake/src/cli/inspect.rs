@@ -45,12 +45,31 @@ pub fn summary(manifest: &Manifest) -> String {
     line("times", format!("{bits} bits, {layers} layer(s); {per_texel:.2} intervals a texel, {most} at most"));
     let [round, merge] = [&manifest.error.quantisation_min, &manifest.error.merge_min];
     line("rounding", format!("{:.4} min a texel, 99 % under {:.4}, worst {:.4}", round.mean, round.p99, round.worst));
-    line("merging", format!("{:.4} min a texel, worst {:.2}, {} texels", merge.mean, merge.worst, manifest.error.merged_texels));
-    let total = seconds.load + seconds.unwrap + seconds.bvh + seconds.visibility + seconds.ambient + seconds.encode + seconds.write;
+    line(
+        "merging",
+        format!("{:.4} min a texel, worst {:.2}, {} texels", merge.mean, merge.worst, manifest.error.merged_texels),
+    );
+    let total = seconds.load
+        + seconds.unwrap
+        + seconds.bvh
+        + seconds.visibility
+        + seconds.ambient
+        + seconds.encode
+        + seconds.write;
     let rate = stats.rays as f64 / seconds.visibility.max(1e-9) / 1e6;
     let threads = stats.threads;
-    line("engine", format!("{}, {:.1} M rays at {rate:.1} M/s on {threads} thread(s)", stats.engine, stats.rays as f64 / 1e6));
-    line("cost", format!("{total:.1} s ({:.1} of them sun), {:.1} MiB", seconds.visibility, stats.bytes as f64 / f64::from(1 << 20)));
+    line(
+        "engine",
+        format!("{}, {:.1} M rays at {rate:.1} M/s on {threads} thread(s)", stats.engine, stats.rays as f64 / 1e6),
+    );
+    line(
+        "cost",
+        format!(
+            "{total:.1} s ({:.1} of them sun), {:.1} MiB",
+            seconds.visibility,
+            stats.bytes as f64 / f64::from(1 << 20)
+        ),
+    );
     text
 }
 
