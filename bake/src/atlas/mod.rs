@@ -12,9 +12,10 @@ mod build;
 mod coverage;
 mod existing;
 mod gutter;
+mod outline;
 mod overlap;
-mod rectangles;
 mod samples;
+mod strip;
 mod tile;
 mod unwrap;
 
