@@ -62,6 +62,7 @@ impl BakeSettings {
             bits: Bits::Eight,
             layer_cap: 2,
             engine: EngineChoice::Rays(64),
+            max_memory_bytes: 4 << 30,
             ..Self::standard(sun)
         }
     }

@@ -11,7 +11,7 @@
 //!   gets less, down to what fits.
 //! * Things are dealt to pages largest first, each to the emptiest page.
 
-use super::rectangles::{self, Packed, Rectangle};
+use super::strip::{self, Packed, Shape};
 use super::tile::{ChartBox, Tile, reference_scale};
 use super::unwrap::Charts;
 use super::{PageSize, Placement};
@@ -48,10 +48,10 @@ pub(super) struct Given {
     pub uv_area: f64,
 }
 
-/// A rectangle on a page and what it is for.
-#[derive(Clone, Copy)]
+/// A shape on a page and what it is for.
+#[derive(Clone)]
 struct Piece {
-    rectangle: Rectangle,
+    shape: Shape,
     item: usize,
     part: Part,
 }
@@ -145,9 +145,9 @@ impl Arrangement<'_> {
     fn place(&self, texels_per_metre: f64, pages: u32, side: u32) -> Option<Plan> {
         let (tiles, units) = self.units(texels_per_metre);
         let dealt = deal(units, pages);
-        let place_page = |pieces: Vec<Piece>| {
-            let rectangles: Vec<_> = pieces.iter().map(|p| p.rectangle).collect();
-            let packed = rectangles::pack(&rectangles, side, side)?;
+        let place_page = |mut pieces: Vec<Piece>| {
+            let shapes: Vec<_> = pieces.iter_mut().map(|p| std::mem::take(&mut p.shape)).collect();
+            let packed = strip::pack(&shapes, side, side)?;
             let size = PageSize { width: side, height: packed.height.next_multiple_of(4).min(side) };
             Some(PlannedPage { size, pieces, packed })
         };
@@ -159,9 +159,8 @@ impl Arrangement<'_> {
     fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<(Vec<Piece>, f64)>) {
         let of_item = |(index, item): (usize, &Item)| self.units_of_item(index, item, texels_per_metre * item.share);
         let (tiles, units): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
-        let area = |r: &Rectangle| f64::from(r.width) * f64::from(r.height);
         let measured = |unit: Vec<Piece>| {
-            let texels = unit.iter().map(|p| area(&p.rectangle)).sum();
+            let texels = unit.iter().map(|p| p.shape.area()).sum();
             (unit, texels)
         };
         (tiles, units.into_iter().flatten().map(measured).collect())
@@ -174,8 +173,8 @@ impl Arrangement<'_> {
             let piece = |(slot, content): (usize, DVec2)| {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
                 let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
-                let rectangle = Rectangle { width, height, may_turn: false };
-                vec![Piece { rectangle, item, part: Part::Instance(slot, content) }]
+                let shape = Shape::rectangle(width, height, false);
+                vec![Piece { shape, item, part: Part::Instance(slot, content) }]
             };
             contents.into_iter().enumerate().map(piece).collect()
         };
@@ -187,7 +186,8 @@ impl Arrangement<'_> {
             Form::Charts(charts) if what.is_loose() => {
                 let piece = |(chart, &size): (usize, &DVec2)| {
                     let chart_box = ChartBox::new(size, texels_per_metre * scales[0], room);
-                    Piece { rectangle: chart_box.rectangle(padding), item, part: Part::Chart(chart, chart_box) }
+                    let shape = chart_box.shape(charts, chart, padding);
+                    Piece { shape, item, part: Part::Chart(chart, chart_box) }
                 };
                 (None, vec![charts.sizes.iter().enumerate().map(piece).collect()])
             }
@@ -203,15 +203,14 @@ impl Arrangement<'_> {
 }
 
 /// Deals units to pages, largest first, each to the page with most room. Empty pages are left out.
-fn deal(units: Vec<(Vec<Piece>, f64)>, pages: u32) -> Vec<Vec<Piece>> {
-    let mut order: Vec<usize> = (0..units.len()).collect();
-    order.sort_by(|&a, &b| units[b].1.total_cmp(&units[a].1).then(a.cmp(&b)));
+fn deal(mut units: Vec<(Vec<Piece>, f64)>, pages: u32) -> Vec<Vec<Piece>> {
+    units.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut filled = vec![0.0f64; pages.max(1) as usize];
     let mut dealt = vec![Vec::new(); filled.len()];
-    for index in order {
+    for (pieces, texels) in units {
         let emptiest = (0..filled.len()).min_by(|&a, &b| filled[a].total_cmp(&filled[b])).unwrap_or(0);
-        filled[emptiest] += units[index].1;
-        dealt[emptiest].extend_from_slice(&units[index].0);
+        filled[emptiest] += texels;
+        dealt[emptiest].extend(pieces);
     }
     dealt.retain(|pieces| !pieces.is_empty());
     dealt
@@ -272,7 +271,7 @@ impl Plan {
                 if let Part::Chart(chart, chart_box) = piece.part {
                     let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y)) + f64::from(self.padding);
                     let page_texels = planned.size.as_dvec2();
-                    homes[piece.item][chart] = Home { corner, chart_box, is_turned: spot.is_turned, page_texels };
+                    homes[piece.item][chart] = Home { corner, chart_box, turns: spot.turns, page_texels };
                 }
             }
         }
@@ -285,19 +284,19 @@ impl Plan {
 struct Home {
     corner: DVec2,
     chart_box: ChartBox,
-    is_turned: bool,
+    turns: u8,
     page_texels: DVec2,
 }
 
 impl Home {
     fn uv(&self, point: DVec2) -> DVec2 {
-        (self.corner + self.chart_box.texel(point, self.is_turned)) / self.page_texels
+        (self.corner + self.chart_box.texel(point, self.turns)) / self.page_texels
     }
 }
 
 impl Default for Home {
     fn default() -> Self {
         let chart_box = ChartBox { density: 0.0, cells: (1, 1), slack: DVec2::ZERO };
-        Self { corner: DVec2::ZERO, chart_box, is_turned: false, page_texels: DVec2::ONE }
+        Self { corner: DVec2::ZERO, chart_box, turns: 0, page_texels: DVec2::ONE }
     }
 }

@@ -221,7 +221,7 @@ fn make_items(
     let total: usize = meshes.iter().map(|&m| scene.meshes[m].triangle_count()).sum();
     let done = std::sync::atomic::AtomicUsize::new(0);
     let item = |&mesh: &usize| {
-        let given = settings.keeps_existing.then(|| existing::judge(&scene.meshes[mesh]).ok()).flatten();
+        let given = settings.keeps_existing.then(|| existing::judge_alone(&scene.meshes[mesh]).ok()).flatten();
         let form = match given {
             Some(given) => Form::Given(given),
             None => Form::Charts(unwrap_mesh(scene, mesh, meter)?),

@@ -7,6 +7,8 @@
 //! surface has area in it, if no more than [`OVERLAP_SHARE`] of it overlaps, and if, at the size it gets on the page, few of
 //! its texels ([`CROWDED_SHARE`]) are wanted by two islands. Islands may be mirrored: reading does not care. Two uses are
 //! told apart: all meshes, each drawn once, share one [0, 1] without overlap ([`share_one_square`]), or each has its own.
+//! In the second case a set must also fill [`LEAST_FILL`] of its rectangle: exporters leave leftovers in `TEXCOORD_1` that
+//! do not overlap but spread a few specks over the whole square, and would starve the rest of the page.
 
 use super::PageSize;
 use super::arrange::Given;
@@ -14,7 +16,7 @@ use super::coverage;
 use super::overlap::{Triangle, area2, overlap_more_than};
 use crate::scene::{Mesh, Scene};
 use glam::{DVec2, Vec2};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Share of the surface that may be collapsed to nothing in the set.
 const NO_AREA_SHARE: f64 = 1e-4;
@@ -22,8 +24,12 @@ const NO_AREA_SHARE: f64 = 1e-4;
 const OVERLAP_SHARE: f64 = 1e-3;
 /// Share of texels that two islands may both touch.
 pub(super) const CROWDED_SHARE: f64 = 0.02;
+/// Least share of its box that a set must cover, if it is to have a rectangle of its own.
+const LEAST_FILL: f64 = 0.25;
 /// Marks a texel with two owners.
 const CROWDED: u32 = u32::MAX;
+/// Marks a texel without one.
+const NOBODY: u32 = u32::MAX - 1;
 /// How far outside [0, 1] is still rounding.
 const ROUNDING: f32 = 1e-5;
 
@@ -40,6 +46,8 @@ pub(super) enum Objection {
     NoArea,
     /// Triangles overlap.
     Overlap,
+    /// It would leave most of its rectangle empty.
+    Sparse,
 }
 
 /// The mesh's `TEXCOORD_1`, if it can serve.
@@ -55,12 +63,18 @@ pub(super) fn judge(mesh: &Mesh) -> Result<Given, Objection> {
     }
     let triangles = triangles(mesh, uvs);
     let (object_area, uv_area) = areas(mesh, &triangles).ok_or(Objection::NoArea)?;
-    if overlap_more_than(&triangles, OVERLAP_SHARE) {
+    if overlap_more_than(&without_copies(mesh, &triangles), OVERLAP_SHARE) {
         return Err(Objection::Overlap);
     }
     let low = used.clone().reduce(Vec2::min).unwrap_or_default().as_dvec2();
     let high = used.reduce(Vec2::max).unwrap_or_default().as_dvec2();
     Ok(Given { low, size: high - low, object_per_uv: (object_area / uv_area).sqrt(), uv_area })
+}
+
+/// Whether the set fills enough of its box to be given a rectangle.
+pub(super) fn judge_alone(mesh: &Mesh) -> Result<Given, Objection> {
+    let given = judge(mesh)?;
+    if given.uv_area < LEAST_FILL * given.size.x * given.size.y { Err(Objection::Sparse) } else { Ok(given) }
 }
 
 /// Whether the meshes, all valid and each drawn once, use different parts of one [0, 1].
@@ -69,7 +83,7 @@ pub(super) fn share_one_square(scene: &Scene, meshes: &[usize]) -> bool {
     for &mesh in meshes {
         let mesh = &scene.meshes[mesh];
         let Some(uvs) = mesh.texcoords[1].as_deref() else { return false };
-        all.extend(triangles(mesh, uvs));
+        all.extend(without_copies(mesh, &triangles(mesh, uvs)));
     }
     !overlap_more_than(&all, OVERLAP_SHARE)
 }
@@ -77,6 +91,22 @@ pub(super) fn share_one_square(scene: &Scene, meshes: &[usize]) -> bool {
 fn triangles(mesh: &Mesh, uvs: &[Vec2]) -> Vec<Triangle> {
     let corners = |t: &[u32]| [0, 1, 2].map(|k| uvs[t[k] as usize].as_dvec2());
     mesh.indices.chunks_exact(3).map(corners).collect()
+}
+
+/// Leaves out triangles that repeat another one, in space and in the set, facing the same way: they show the same surface,
+/// so they may share its texels.
+fn without_copies(mesh: &Mesh, triangles: &[Triangle]) -> Vec<Triangle> {
+    let corner = |v: u32, uv: DVec2| {
+        let at = mesh.positions[v as usize] + 0.0;
+        (at.to_array().map(f32::to_bits), (uv + 0.0).to_array().map(f64::to_bits))
+    };
+    let mut seen = HashSet::with_capacity(triangles.len());
+    let mut is_first = |(t, uvs): &(&[u32], &Triangle)| {
+        let corners = [0, 1, 2].map(|k| corner(t[k], uvs[k]));
+        let turned = [0, 1, 2].map(|k| [0, 1, 2].map(|j| corners[(j + k) % 3]));
+        seen.insert(turned.into_iter().min())
+    };
+    mesh.indices.chunks_exact(3).zip(triangles).filter(|pair| is_first(pair)).map(|(_, t)| *t).collect()
 }
 
 /// Summed area in object space and in texture coordinates; none if too much of the surface has no area in the set.
@@ -101,8 +131,8 @@ fn object_area(mesh: &Mesh, triangle: &[u32]) -> f64 {
 /// Of the texels that the meshes' `TEXCOORD_1` touch on a page of this size, the share that two islands touch.
 /// `place` takes texture coordinates to texels.
 pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVec2) -> DVec2) -> f64 {
-    let mut owner: HashMap<u32, u32> = HashMap::new();
-    let (mut crowded, mut base) = (0usize, 0u32);
+    let mut owners = vec![NOBODY; size.texel_count()];
+    let (mut touched, mut crowded, mut base) = (0u32, 0u32, 0u32);
     for mesh in meshes {
         let Some(uvs) = mesh.texcoords[1].as_deref() else { continue };
         let island = islands(mesh, uvs);
@@ -111,8 +141,11 @@ pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVe
             let mine = base + island[triangle[0] as usize];
             for y in coverage::rows(&corners, size.height) {
                 for x in coverage::columns(&corners, y, size.width) {
-                    let owner = owner.entry(y * size.width + x).or_insert(mine);
-                    if *owner != mine && *owner != CROWDED {
+                    let owner = &mut owners[(y * size.width + x) as usize];
+                    if *owner == NOBODY {
+                        *owner = mine;
+                        touched += 1;
+                    } else if *owner != mine && *owner != CROWDED {
                         *owner = CROWDED;
                         crowded += 1;
                     }
@@ -121,7 +154,7 @@ pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVe
         }
         base += mesh.positions.len() as u32;
     }
-    crowded as f64 / owner.len().max(1) as f64
+    f64::from(crowded) / f64::from(touched.max(1))
 }
 
 /// For each vertex, the least vertex of its island. Vertices with one place in the set are one.

@@ -13,9 +13,10 @@ mod coverage;
 mod existing;
 mod gutter;
 mod of_set;
+mod outline;
 mod overlap;
-mod rectangles;
 mod samples;
+mod strip;
 mod tile;
 mod unwrap;
 

@@ -6,9 +6,13 @@
 //! Practice: where scales differ widely, padding for the smallest would waste most of the largest's rectangle; then it is
 //! cheaper to show the small ones larger than they need. [`reference_scale`] weighs the two.
 
-use super::rectangles::{self, Packed, Rectangle, Spot};
+use super::outline::Outline;
+use super::strip::{self, Packed, Shape, Spot};
 use super::unwrap::Charts;
 use glam::DVec2;
+
+/// Narrower charts are packed as boxes.
+const LEAST_OUTLINED_TEXELS: u32 = 8;
 
 /// A chart at some density: its content box in whole texels.
 #[derive(Debug, Clone, Copy)]
@@ -29,14 +33,27 @@ impl ChartBox {
         Self { density, cells: (cells.x as u32, cells.y as u32), slack: (cells - size * density) * 0.5 }
     }
 
-    pub fn rectangle(&self, padding: u32) -> Rectangle {
-        Rectangle { width: self.cells.0 + 2 * padding, height: self.cells.1 + 2 * padding, may_turn: true }
+    /// The chart's padded shape.
+    pub fn shape(&self, charts: &Charts, chart: usize, padding: u32) -> Shape {
+        let (width, height) = (self.cells.0 + 2 * padding, self.cells.1 + 2 * padding);
+        let is_worth_it = self.cells.0.min(self.cells.1) >= LEAST_OUTLINED_TEXELS;
+        let outline = is_worth_it.then(|| {
+            let corners = |t: [u32; 3]| t.map(|v| self.texel(charts.points[v as usize], 0));
+            Outline::new(charts.triangles_of(chart).map(corners), self.cells, padding)
+        });
+        Shape { width, height, may_turn: true, outline }
     }
 
-    /// Texel, from the corner of the padded rectangle's content, of a point of the chart. Turning never mirrors.
-    pub fn texel(&self, point: DVec2, is_turned: bool) -> DVec2 {
+    /// Texel, from the corner of the padded box's content, of a point of the chart. Turning never mirrors.
+    pub fn texel(&self, point: DVec2, turns: u8) -> DVec2 {
         let texel = point * self.density + self.slack;
-        if is_turned { DVec2::new(f64::from(self.cells.1) - texel.y, texel.x) } else { texel }
+        let (width, height) = (f64::from(self.cells.0), f64::from(self.cells.1));
+        match turns % 4 {
+            0 => texel,
+            1 => DVec2::new(height - texel.y, texel.x),
+            2 => DVec2::new(width - texel.x, height - texel.y),
+            _ => DVec2::new(texel.y, width - texel.x),
+        }
     }
 }
 
@@ -53,10 +70,10 @@ impl Tile {
     /// Packs at `density` texels a unit of object space. `limit_texels` bounds a chart's longer side.
     pub fn new(charts: &Charts, density: f64, padding: u32, limit_texels: f64) -> Self {
         let boxes: Vec<_> = charts.sizes.iter().map(|&size| ChartBox::new(size, density, limit_texels)).collect();
-        let rectangles: Vec<_> = boxes.iter().map(|b| b.rectangle(padding)).collect();
-        let (width, packed) = pack_compactly(&rectangles);
+        let shapes: Vec<_> = boxes.iter().enumerate().map(|(chart, b)| b.shape(charts, chart, padding)).collect();
+        let packed = pack_compactly(&shapes);
         let pad = f64::from(2 * padding);
-        let inner = DVec2::new(f64::from(width) - pad, f64::from(packed.height) - pad).max(DVec2::ONE);
+        let inner = DVec2::new(f64::from(packed.width) - pad, f64::from(packed.height) - pad).max(DVec2::ONE);
         Self { boxes, spots: packed.spots, inner }
     }
 
@@ -64,23 +81,17 @@ impl Tile {
     pub fn uv(&self, chart: usize, point: DVec2) -> DVec2 {
         let spot = self.spots[chart];
         let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y));
-        ((corner + self.boxes[chart].texel(point, spot.is_turned)) / self.inner).clamp(DVec2::ZERO, DVec2::ONE)
+        ((corner + self.boxes[chart].texel(point, spot.turns)) / self.inner).clamp(DVec2::ZERO, DVec2::ONE)
     }
 }
 
 /// Tries a few widths around the square and keeps the smallest box.
-fn pack_compactly(rectangles: &[Rectangle]) -> (u32, Packed) {
-    let area: f64 = rectangles.iter().map(|r| f64::from(r.width) * f64::from(r.height)).sum();
-    let widest = rectangles.iter().map(|r| r.width.max(r.height)).max().unwrap_or(1);
-    let tries = [0.8, 0.9, 1.0, 1.1].map(|k| ((area.sqrt() * k).ceil() as u32).max(widest));
-    let fits = tries.iter().filter_map(|&width| {
-        let packed = rectangles::pack(rectangles, width, u32::MAX / 2)?;
-        let used =
-            rectangles.iter().zip(&packed.spots).map(|(r, s)| s.x + if s.is_turned { r.height } else { r.width });
-        Some((used.max().unwrap_or(1), packed))
-    });
-    let area = |(width, packed): &(u32, Packed)| u64::from(*width) * u64::from(packed.height);
-    fits.min_by_key(area).unwrap_or_default()
+fn pack_compactly(shapes: &[Shape]) -> Packed {
+    let area: f64 = shapes.iter().map(Shape::area).sum();
+    let widest = shapes.iter().map(|s| s.width.max(s.height)).max().unwrap_or(1);
+    let tries = [0.9, 1.0, 1.1, 1.2].map(|k| ((area.sqrt() * k).ceil() as u32).max(widest));
+    let fits = tries.iter().filter_map(|&width| strip::pack(shapes, width, u32::MAX / 2));
+    fits.min_by_key(|packed| u64::from(packed.width) * u64::from(packed.height)).unwrap_or_default()
 }
 
 /// The scale that a mesh's layout is padded for; instances below it are shown at it. `density` is in texels a metre.

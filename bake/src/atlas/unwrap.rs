@@ -43,9 +43,29 @@ pub(super) struct Charts {
     pub chart_of: Vec<u32>,
     /// Extent of each chart's box, in units of object space.
     pub sizes: Vec<DVec2>,
+    /// Triangles by chart.
+    by_chart: Vec<u32>,
+    /// Where each chart's triangles start in `by_chart`; one more at the end.
+    first_of: Vec<u32>,
 }
 
 impl Charts {
+    /// The triangles of a chart, as triples into `points`.
+    pub fn triangles_of(&self, chart: usize) -> impl Iterator<Item = [u32; 3]> {
+        let range = self.first_of[chart] as usize..self.first_of[chart + 1] as usize;
+        self.by_chart[range].iter().map(|&t| [0, 1, 2].map(|k| self.indices[3 * t as usize + k]))
+    }
+
+    /// Sorts triangles by chart.
+    fn sorted(mut self) -> Self {
+        let chart = |t: &u32| self.chart_of[self.indices[3 * *t as usize] as usize];
+        let mut by_chart: Vec<u32> = (0..self.indices.len() as u32 / 3).collect();
+        by_chart.sort_by_key(chart);
+        let first_of = (0..=self.sizes.len() as u32).map(|c| by_chart.partition_point(|t| chart(t) < c) as u32);
+        (self.first_of, self.by_chart) = (first_of.collect(), by_chart);
+        self
+    }
+
     /// Area of all triangles, flattened.
     pub fn area(&self) -> f64 {
         let area = |t: &[u32]| {
@@ -63,9 +83,9 @@ pub(super) fn unwrap(mesh: &Mesh, keep_going: &(dyn Fn() -> bool + Sync)) -> Opt
     }
     let (positions, unit) = normalise(mesh);
     match generate(mesh, &positions, keep_going) {
-        Ok((output, extent)) => Some(measure(mesh, &output, extent * unit)),
+        Ok((output, extent)) => Some(measure(mesh, &output, extent * unit).sorted()),
         Err(Error::Cancelled) => None,
-        Err(_) => Some(each_triangle_alone(mesh)),
+        Err(_) => Some(each_triangle_alone(mesh).sorted()),
     }
 }
 
@@ -204,6 +224,7 @@ fn one_point(mesh: &Mesh) -> Charts {
         points: vec![DVec2::ZERO; mesh.positions.len()],
         chart_of: vec![0; mesh.positions.len()],
         sizes: vec![DVec2::ZERO],
+        ..Charts::default()
     }
 }
 

@@ -117,7 +117,7 @@ pub struct CostArgs {
     /// Threads; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
-    /// Memory to plan for, as 8G or 500M; a bake that needs more is refused. [default: 8G, final 16G]
+    /// Memory to plan for, as 8G or 500M; a bake that needs more is refused. [default: 4G, 8G or 16G, by preset]
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub max_memory: Option<u64>,
 }

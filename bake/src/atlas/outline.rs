@@ -1,0 +1,99 @@
+//! The outline of a chart: what of its box it takes, seen from its four sides.
+//!
+//! Practice: a chart is drawn conservatively into its box, every row and column keeps the first and last texel touched, and
+//! both are widened by the padding. A row or column that nothing touches takes nothing.
+
+use super::coverage::{self, Corners};
+
+/// Extents of a padded chart, in texels of its padded box: half-open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Outline {
+    /// For each column, rows.
+    columns: Vec<(u16, u16)>,
+    /// For each row, columns.
+    rows: Vec<(u16, u16)>,
+}
+
+/// What an untouched line has: any texel widens it.
+const UNTOUCHED: (u16, u16) = (u16::MAX, 0);
+
+impl Outline {
+    /// Draws triangles, in texels of a box of `width` by `height`.
+    pub fn new(triangles: impl Iterator<Item = Corners>, (width, height): (u32, u32), padding: u32) -> Self {
+        let mut columns = vec![UNTOUCHED; width as usize];
+        let mut rows = vec![UNTOUCHED; height as usize];
+        for corners in triangles {
+            for y in coverage::rows(&corners, height) {
+                let run = coverage::columns(&corners, y, width);
+                widen(&mut rows[y as usize], (run.start as u16, run.end as u16));
+                for column in &mut columns[run.start as usize..run.end as usize] {
+                    widen(column, (y as u16, y as u16 + 1));
+                }
+            }
+        }
+        Self { columns: pad(&columns, padding), rows: pad(&rows, padding) }
+    }
+
+    /// Texels between the first and last of each column.
+    pub fn area(&self) -> f64 {
+        self.columns.iter().map(|c| f64::from(c.1.saturating_sub(c.0))).sum()
+    }
+
+    /// For each column of the outline after some quarter turns, its rows.
+    pub fn columns(&self, turns: u8) -> Vec<(u16, u16)> {
+        let (width, height) = (self.columns.len() as u16, self.rows.len() as u16);
+        let mirror = |&(low, high): &(u16, u16), side: u16| {
+            if low < high { (side - high, side - low) } else { (low, high) }
+        };
+        match turns % 4 {
+            0 => self.columns.clone(),
+            1 => self.rows.iter().rev().copied().collect(),
+            2 => self.columns.iter().rev().map(|c| mirror(c, height)).collect(),
+            _ => self.rows.iter().map(|r| mirror(r, width)).collect(),
+        }
+    }
+}
+
+fn widen(range: &mut (u16, u16), by: (u16, u16)) {
+    *range = (range.0.min(by.0), range.1.max(by.1));
+}
+
+/// Widens by `padding` in both directions, in a box that is larger by it on every side.
+fn pad(lines: &[(u16, u16)], padding: u32) -> Vec<(u16, u16)> {
+    let around = 2 * padding as usize;
+    let padded = |line: usize| {
+        let near = &lines[line.saturating_sub(around)..lines.len().min(line + 1)];
+        let touched = near.iter().filter(|l| **l != UNTOUCHED).copied();
+        let range = touched.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        range.map_or(UNTOUCHED, |(low, high)| (low, high + around as u16))
+    };
+    (0..lines.len() + around).map(padded).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    /// A triangle that takes the lower left half of a box of 6 by 3 texels.
+    fn wedge(padding: u32) -> Outline {
+        let corners = [DVec2::ZERO, DVec2::new(6.0, 0.0), DVec2::new(0.0, 3.0)];
+        Outline::new(std::iter::once(corners), (6, 3), padding)
+    }
+
+    #[test]
+    fn outline_follows_the_shape() {
+        assert_eq!(wedge(0).columns, [(0, 3), (0, 3), (0, 2), (0, 2), (0, 1), (0, 1)]);
+        assert_eq!(wedge(0).rows, [(0, 6), (0, 4), (0, 2)]);
+        assert_eq!(wedge(1).rows, [(0, 8), (0, 8), (0, 8), (0, 6), (0, 4)]);
+    }
+
+    #[test]
+    fn four_turns_come_back() {
+        let wedge = wedge(0);
+        assert_eq!(wedge.columns(1), [(0, 2), (0, 4), (0, 6)]);
+        assert_eq!(wedge.columns(2), [(2, 3), (2, 3), (1, 3), (1, 3), (0, 3), (0, 3)]);
+        assert_eq!(wedge.columns(3), [(0, 6), (2, 6), (4, 6)]);
+        assert_eq!(wedge.columns(4), wedge.columns(0));
+    }
+}

@@ -1,0 +1,184 @@
+//! Packing shapes into a strip.
+//!
+//! Theory: a skyline with profiles. What is packed is kept as its upper outline, one height a column; a shape, given by its
+//! lower and upper outline, goes where its far edge comes to lie lowest, largest first, in the best of four turns. So shapes
+//! nest into each other from above, though not into holes. Based on: Nöll and Stricker, "Efficient Packing of Arbitrarily
+//! Shaped Charts for Automatic Texture Atlas Generation", 2011, less their filling of holes; and Jylänki, "A Thousand Ways
+//! to Pack the Bin", 2010, section 4, for plain rectangles.
+//!
+//! Practice: most positions are refused by one column that stands too high, and so are all others that would have the
+//! shape over that column: the search jumps past it. Small shapes are packed as their boxes.
+
+use super::outline::Outline;
+
+/// Something to pack, in texels.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Shape {
+    pub width: u32,
+    pub height: u32,
+    /// Whether it may be turned.
+    pub may_turn: bool,
+    /// If none, the whole box is taken.
+    pub outline: Option<Outline>,
+}
+
+/// Where a shape went.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Spot {
+    pub x: u32,
+    pub y: u32,
+    /// Quarter turns, from +x towards +y.
+    pub turns: u8,
+}
+
+/// All of the shapes, and the size of box that they need.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Packed {
+    pub spots: Vec<Spot>,
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Shape {
+    /// A box.
+    pub fn rectangle(width: u32, height: u32, may_turn: bool) -> Self {
+        Self { width, height, may_turn, outline: None }
+    }
+
+    /// Texels that it takes, more or less.
+    pub fn area(&self) -> f64 {
+        let full = f64::from(self.width) * f64::from(self.height);
+        self.outline.as_ref().map_or(full, |outline| outline.area())
+    }
+
+    fn turns(&self) -> std::ops::Range<u8> {
+        match (&self.outline, self.may_turn) {
+            (_, false) => 0..1,
+            (None, true) if self.width == self.height => 0..1,
+            (None, true) => 0..2,
+            (Some(_), true) => 0..4,
+        }
+    }
+}
+
+/// A shape turned: per column, the first row it takes and the first it does not.
+struct Turned {
+    width: u32,
+    height: u32,
+    columns: Option<Vec<(u16, u16)>>,
+}
+
+impl Turned {
+    fn new(shape: &Shape, turns: u8) -> Self {
+        let (width, height) = if turns % 2 == 0 { (shape.width, shape.height) } else { (shape.height, shape.width) };
+        Self { width, height, columns: shape.outline.as_ref().map(|outline| outline.columns(turns)) }
+    }
+
+    fn bottom(&self, column: u32) -> u32 {
+        self.columns.as_ref().map_or(0, |columns| u32::from(columns[column as usize].0))
+    }
+
+    fn top(&self, column: u32) -> u32 {
+        self.columns.as_ref().map_or(self.height, |columns| u32::from(columns[column as usize].1))
+    }
+
+    /// The lowest place on the skyline whose far edge is below `limit`; leftmost among equals.
+    fn lowest(&self, skyline: &[u32], mut limit: u32) -> Option<(u32, u32)> {
+        let deepest = (0..self.width).map(|c| self.bottom(c)).max().unwrap_or(0);
+        let mut best = None;
+        let mut x = 0;
+        'positions: while x + self.width <= skyline.len() as u32 {
+            let mut y = 0;
+            for column in (0..self.width).rev() {
+                let high = skyline[(x + column) as usize];
+                let rest = high.saturating_sub(self.bottom(column));
+                if rest + self.height >= limit {
+                    let hopeless = high.saturating_sub(deepest) + self.height >= limit;
+                    x += if hopeless { column + 1 } else { 1 };
+                    continue 'positions;
+                }
+                y = y.max(rest);
+            }
+            best = Some((x, y));
+            limit = y + self.height;
+            x += 1;
+        }
+        best
+    }
+
+    fn raise(&self, skyline: &mut [u32], x: u32, y: u32) {
+        for column in 0..self.width {
+            let high = &mut skyline[(x + column) as usize];
+            *high = (*high).max(y + self.top(column));
+        }
+    }
+}
+
+/// Packs into a strip of the given width; `None` if that needs more than `height`.
+pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> {
+    let mut order: Vec<usize> = (0..shapes.len()).collect();
+    order.sort_by_key(|&i| {
+        let shape = &shapes[i];
+        (std::cmp::Reverse((shape.width.max(shape.height), shape.width.min(shape.height))), i)
+    });
+    let mut skyline = vec![0; width as usize];
+    let mut packed = Packed { spots: vec![Spot::default(); shapes.len()], ..Packed::default() };
+    for index in order {
+        let mut best: Option<(Spot, Turned)> = None;
+        for turns in shapes[index].turns() {
+            let turned = Turned::new(&shapes[index], turns);
+            let limit = best.as_ref().map_or(height + 1, |(spot, best)| spot.y + best.height);
+            if let Some((x, y)) = turned.lowest(&skyline, limit) {
+                best = Some((Spot { x, y, turns }, turned));
+            }
+        }
+        let (spot, turned) = best?;
+        turned.raise(&mut skyline, spot.x, spot.y);
+        packed.spots[index] = spot;
+        packed.width = packed.width.max(spot.x + turned.width);
+        packed.height = packed.height.max(spot.y + turned.height);
+    }
+    Some(packed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scattered(count: u32) -> Vec<Shape> {
+        let mut state = 1u32;
+        let mut next = |limit: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            1 + (state >> 16) % limit
+        };
+        (0..count).map(|i| Shape::rectangle(next(40), next(25), i % 3 > 0)).collect()
+    }
+
+    #[test]
+    fn packed_rectangles_lie_in_the_strip_and_do_not_overlap() {
+        let shapes = scattered(700);
+        let packed = pack(&shapes, 500, 10_000).unwrap();
+        let mut taken = vec![false; 500 * packed.height as usize];
+        for (r, s) in shapes.iter().zip(&packed.spots) {
+            assert!(r.may_turn || s.turns == 0);
+            let (w, h) = if s.turns == 1 { (r.height, r.width) } else { (r.width, r.height) };
+            for y in s.y..s.y + h {
+                for x in s.x..s.x + w {
+                    assert!(x < 500 && !std::mem::replace(&mut taken[(y * 500 + x) as usize], true));
+                }
+            }
+        }
+        let fill = taken.iter().filter(|&&t| t).count() as f64 / taken.len() as f64;
+        assert!(fill > 0.9, "only {fill:.3} of the strip is used");
+    }
+
+    #[test]
+    fn too_much_for_the_strip_is_refused() {
+        let fixed = Shape::rectangle(10, 4, false);
+        assert!(pack(std::slice::from_ref(&fixed), 9, 100).is_none());
+        assert!(pack(&[Shape { may_turn: true, ..fixed.clone() }], 9, 100).is_some());
+        let six = vec![fixed; 6];
+        assert!(pack(&six, 20, 11).is_none());
+        assert!(pack(&six, 20, 12).is_some());
+    }
+}
