@@ -119,7 +119,7 @@ pub enum LoadError {
         parent: usize,
     },
     /// Nothing to bake.
-    #[error("{path} draws no triangles: {cause}; check that meshes hang under nodes of the default scene", path = .path.display())]
+    #[error("{path} draws no triangles: {cause}", path = .path.display())]
     NoTriangles {
         /// The file.
         path: PathBuf,
