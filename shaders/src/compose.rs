@@ -1,6 +1,6 @@
 //! Puts shaders together: constants, then files, in the order in which they would be read.
 
-use crate::uniforms::{MAX_LIGHT, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
+use crate::uniforms::{WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
 use crate::vertex::{DEPTH_VERTEX_WGSL, surface_vertex_wgsl};
 use std::fmt::Write;
 
@@ -97,8 +97,8 @@ pub fn sky_shader() -> String {
 
 fn constants() -> String {
     format!(
-        "const MAX_LIGHT: f32 = {MAX_LIGHT:?};\nconst WRAP_REPEAT: u32 = {WRAP_REPEAT}u;\nconst WRAP_MIRROR: u32 = \
-         {WRAP_MIRROR}u;\nconst WRAP_CLAMP: u32 = {WRAP_CLAMP}u;\n"
+        "const WRAP_REPEAT: u32 = {WRAP_REPEAT}u;\nconst WRAP_MIRROR: u32 = {WRAP_MIRROR}u;\nconst WRAP_CLAMP: u32 = \
+         {WRAP_CLAMP}u;\n"
     )
 }
 

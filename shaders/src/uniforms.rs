@@ -2,8 +2,6 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// Brightest light that a lit pixel can hold: below the largest 16-bit float.
-pub const MAX_LIGHT: f32 = 60_000.0;
 /// [`MaterialUniform::wrap_u`]: tile.
 pub const WRAP_REPEAT: u32 = 0;
 /// Tile, every second one mirrored.

@@ -9,5 +9,5 @@ fn lit_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     let normal = towards_eye(normalize(varyings.shading_normal.xyz), varyings, ray);
     let visibility = sun_visibility(varyings.page_uv, face);
     let light = shade(material, base_color.rgb, normal, visibility, openness(varyings.page_uv));
-    return vec4<f32>(min(light, vec3<f32>(MAX_LIGHT)), 1.0);
+    return vec4<f32>(light, 1.0);
 }

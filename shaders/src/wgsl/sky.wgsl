@@ -7,5 +7,5 @@ fn sky_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32>
 
 @fragment
 fn sky_fragment(@builtin(position) clip: vec4<f32>) -> @location(0) vec4<f32> {
-    return vec4<f32>(min(sky_color(normalize(view_ray(clip.xy))), vec3<f32>(MAX_LIGHT)), 1.0);
+    return vec4<f32>(sky_color(normalize(view_ray(clip.xy))), 1.0);
 }
