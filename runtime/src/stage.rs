@@ -3,14 +3,17 @@
 use crate::texture::MipChain;
 use glam::{DMat3, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::OnceLock;
 use sunbake::disk::manifest::InstanceEntry;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
-use sunbake::scene::{Alpha, Geometry, Material, Mesh, Scene};
+use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene};
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
+
+/// Memory that a set's own scene may take: what was baked was read once already.
+const MAX_SCENE_BYTES: u64 = 16 << 30;
 
 /// What is drawn, and the maps that light it.
 pub struct Stage {
@@ -67,13 +70,8 @@ pub enum StageError {
     #[error(transparent)]
     Set(#[from] sunbake::disk::read::ReadError),
     /// The set's scene cannot be read.
-    #[error("cannot read the set's scene {}: {reason}; bake the scene again", path.display())]
-    Scene {
-        /// Which file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: String,
-    },
+    #[error("the set's scene cannot be read: {0}")]
+    Scene(#[from] LoadError),
     /// The manifest and the scene do not agree.
     #[error("the set's scene and its manifest disagree: {reason}; bake the scene again")]
     Mismatch {
@@ -86,7 +84,7 @@ impl Stage {
     /// Reads a baked set and its scene.
     pub fn read(folder: &Path) -> Result<Self, StageError> {
         let set = sunbake::disk::read::read(folder)?;
-        let scene = load_scene(&set.scene_file())?;
+        let scene = sunbake::scene::load(&set.scene_file(), &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
         Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)
     }
 
@@ -199,10 +197,6 @@ impl Stage {
         let chart = self.charts[self.geometry.instance[triangle] as usize]?;
         Some((chart.page, blend(self.corners(triangle).page_uv, hit.barycentric.map(|b| b as f32))))
     }
-}
-
-fn load_scene(path: &Path) -> Result<Scene, StageError> {
-    Err(StageError::Scene { path: path.to_owned(), reason: "the loader is not there yet".into() })
 }
 
 fn charts(scene: &Scene, entries: &[InstanceEntry], page_count: usize) -> Result<Vec<Option<Chart>>, StageError> {

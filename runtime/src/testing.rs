@@ -99,7 +99,7 @@ fn cell_corners(triangle: u32, columns: u32, cell: u32) -> [Vec2; 3] {
 
 fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, cell: u32, bits: Bits) -> LaneMaps {
     let tracer = Tracer::new(scene, geometry);
-    let engine = RayEngine::new(&tracer, path, 1024);
+    let engine = RayEngine::new(&tracer, path, 128);
     let edge = columns * cell;
     let mut encoder = PageEncoder::new((edge * edge) as usize, bits, 8);
     let mut session = engine.session();

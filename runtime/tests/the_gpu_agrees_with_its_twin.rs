@@ -59,7 +59,7 @@ fn posts() -> Scene {
         let x = i as f32 * 2.0;
         builder = builder.block(Vec3::new(x, 0.0, -0.2), Vec3::new(x + 0.3, 2.5, 0.2));
     }
-    let sphere: Vec<_> = icosphere(2).iter().map(|t| t.map(|v| v * 0.8 + Vec3::new(1.0, 0.9, 2.5))).collect();
+    let sphere: Vec<_> = icosphere(1).iter().map(|t| t.map(|v| v * 0.8 + Vec3::new(1.0, 0.9, 2.5))).collect();
     builder.soup(&sphere).build()
 }
 
@@ -120,7 +120,7 @@ fn everything(wrap: Wrap) -> Scene {
 #[test]
 fn posts_on_a_floor() {
     let gpu = gpu();
-    let stage = bake(posts(), Some(equinox(35.0)), 48, Bits::Sixteen);
+    let stage = bake(posts(), Some(equinox(35.0)), 20, Bits::Sixteen);
     for (name, filter) in [("posts bilinear", Filter::Bilinear), ("posts nearest", Filter::Nearest)] {
         assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
     }
@@ -130,7 +130,7 @@ fn posts_on_a_floor() {
 fn textures_holes_mirrors_colours_and_lamps() {
     let gpu = gpu();
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
-        let stage = bake(everything(wrap), Some(equinox(35.0)), 32, Bits::Eight);
+        let stage = bake(everything(wrap), Some(equinox(35.0)), 24, Bits::Eight);
         let name = format!("everything {wrap:?}");
         let eye = DVec3::new(4.0, 3.5, 7.0);
         assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), Filter::Bilinear));
