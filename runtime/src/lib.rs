@@ -17,6 +17,7 @@ pub mod image;
 pub mod light;
 pub mod playback;
 pub mod shade;
+pub mod sheet;
 pub mod shot;
 pub mod stage;
 pub mod technique;

@@ -37,21 +37,20 @@ pub fn srgb_from_linear(x: f32) -> f32 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// Linear light of an sRGB code.
+pub fn linear_from_srgb(code: u8) -> f32 {
+    LINEAR_FROM_SRGB[code as usize]
+}
+
 fn linear(texel: [u8; 4]) -> Vec4 {
     let [r, g, b, a] = texel;
-    let decode = |code: u8| LINEAR_FROM_SRGB[code as usize];
-    Vec4::new(decode(r), decode(g), decode(b), f32::from(a) / 255.0)
+    Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), f32::from(a) / 255.0)
 }
 
 fn encoded(color: Vec4) -> [u8; 4] {
     let code = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
-    [color.x, color.y, color.z]
-        .map(|x| code(srgb_from_linear(x)))
-        .into_iter()
-        .chain([code(color.w)])
-        .collect::<Vec<_>>()[..4]
-        .try_into()
-        .unwrap_or_default()
+    let [r, g, b] = [color.x, color.y, color.z].map(|x| code(srgb_from_linear(x)));
+    [r, g, b, code(color.w)]
 }
 
 impl MipChain {

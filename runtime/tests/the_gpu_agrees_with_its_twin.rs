@@ -64,7 +64,7 @@ fn posts() -> Scene {
 }
 
 fn checker(wrap: Wrap) -> (SceneBuilder, TextureRef) {
-    let texel = |i: u32| if (i % 16 + i / 16) % 2 == 0 { [230, 200, 160, 255] } else { [60, 80, 120, 60] };
+    let texel = |i: u32| if (i % 16 + i / 16).is_multiple_of(2) { [230, 200, 160, 255] } else { [60, 80, 120, 60] };
     let (builder, image) = SceneBuilder::new().image(16, 16, (0..256).map(texel).collect());
     let texture = TextureRef {
         image,

@@ -19,6 +19,10 @@ pub struct Args {
 pub enum Command {
     /// Draw one picture of a set.
     Frame(FrameArgs),
+    /// Draw a day of a set: numbered pictures, a contact sheet, an animation.
+    Frames(FramesArgs),
+    /// Bake our own scene for a June day and draw the day beside truth.
+    Demo(DemoArgs),
 }
 
 #[derive(Debug, ClapArgs)]
@@ -41,6 +45,59 @@ pub struct FrameArgs {
     /// What the picture shows.
     #[arg(long = "output", value_enum, default_value_t = OutputChoice::Color)]
     pub output: OutputChoice,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct FramesArgs {
+    /// The set's folder.
+    pub set: PathBuf,
+    /// How many pictures, 1 to 10000, at the middles of as many equal parts of the path.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub count: u32,
+    /// Folder for the pictures; made if it is not there. Files of the same name are replaced.
+    ///
+    /// It gets frame_0000.png and so on, contact.png with all of them small, and day.png, an animated PNG.
+    #[arg(short, long = "folder", value_name = "DIR")]
+    pub output_folder: PathBuf,
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// What the pictures show.
+    #[arg(long = "output", value_enum, default_value_t = OutputChoice::Color)]
+    pub output: OutputChoice,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct DemoArgs {
+    /// Folder for what the demo makes; the set goes into its folder `set`.
+    #[arg(short, long, value_name = "DIR", default_value = "target/demo")]
+    pub output: PathBuf,
+    /// Another scene than our own: .gltf or .glb.
+    #[arg(long, value_name = "FILE")]
+    pub scene: Option<PathBuf>,
+    /// Edge of the set's page in texels, 64 to 16384. Time and bytes grow with the square.
+    #[arg(long, value_name = "N", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(64..=16384))]
+    pub page_size: u32,
+    /// Columns of the sheet, 1 to 24.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=24))]
+    pub count: u32,
+    /// What draws the baked row: the GPU if there is one, the GPU, or the CPU.
+    #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
+    pub renderer: RendererChoice,
+    /// Threads; 0 is one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+/// What is printed.
+#[derive(Debug, Clone, Copy, ClapArgs)]
+#[command(next_help_heading = "Printing")]
+pub struct MannersArgs {
     /// Print what was drawn, and at what cost, as JSON on stdout.
     #[arg(long)]
     pub json: bool,
@@ -51,6 +108,7 @@ pub struct FrameArgs {
 
 /// How pictures are taken, whatever they are of.
 #[derive(Debug, Clone, ClapArgs)]
+#[command(next_help_heading = "Look")]
 pub struct LookArgs {
     /// Width and height in pixels, each 1 to 16384.
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1280x720")]

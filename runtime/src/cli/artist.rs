@@ -1,8 +1,8 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
-use super::args::{LookArgs, RendererChoice, TechniqueChoice};
+use super::args::{LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use super::exit::Failure;
-use sunbake_runtime::gpu::{Census, Gpu, GpuError};
+use sunbake_runtime::gpu::{Gpu, GpuError};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
 use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage, View};
 
@@ -29,40 +29,18 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
     }
 }
 
-/// A technique, ready to draw a stage.
-pub enum Artist<'a> {
-    /// Maps on the GPU.
-    Gpu(BakedGpu<'a>),
-    /// Anything on the CPU.
-    Cpu(Box<dyn Technique + 'a>),
-}
-
-impl<'a> Artist<'a> {
-    /// Prepares what was asked for.
-    pub fn new(gpu: Option<&'a Gpu>, stage: &'a Stage, look: &LookArgs) -> Result<Self, Failure> {
-        let filter: Filter = look.filter.into();
-        Ok(match (gpu, look.technique) {
-            (Some(gpu), TechniqueChoice::Baked) => Self::Gpu(BakedGpu::new(gpu, stage, filter)?),
-            (None, TechniqueChoice::Baked) => Self::Cpu(Box::new(BakedCpu::new(stage, filter))),
-            (_, TechniqueChoice::Truth(truth)) => Self::Cpu(Box::new(truth)),
-        })
-    }
-
-    /// The technique.
-    pub fn technique(&mut self) -> &mut dyn Technique {
-        match self {
-            Self::Gpu(technique) => technique,
-            Self::Cpu(technique) => technique.as_mut(),
-        }
-    }
-
-    /// What the GPU holds for it, if it draws.
-    pub fn census(&self) -> Option<Census> {
-        match self {
-            Self::Gpu(technique) => Some(technique.census()),
-            Self::Cpu(_) => None,
-        }
-    }
+/// The technique that was asked for, ready to draw a stage.
+pub fn technique<'a>(
+    gpu: Option<&'a Gpu>,
+    stage: &'a Stage,
+    look: &LookArgs,
+) -> Result<Box<dyn Technique + 'a>, Failure> {
+    let filter: Filter = look.filter.into();
+    Ok(match (gpu, look.technique) {
+        (Some(gpu), TechniqueChoice::Baked) => Box::new(BakedGpu::new(gpu, stage, filter)?),
+        (None, TechniqueChoice::Baked) => Box::new(BakedCpu::new(stage, filter)),
+        (_, TechniqueChoice::Truth(truth)) => Box::new(truth),
+    })
 }
 
 /// The view that was asked for, with all its samples.
@@ -82,15 +60,14 @@ pub enum Picture {
 
 /// Draws a frame.
 pub fn draw(
-    artist: &mut Artist,
+    technique: &mut dyn Technique,
     shot: &Shot,
     moment: &Moment,
-    output: super::args::OutputChoice,
+    output: OutputChoice,
 ) -> Result<Picture, Failure> {
-    let technique = artist.technique();
     Ok(match output {
-        super::args::OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
-        super::args::OutputChoice::Visibility => Picture::Visibility(technique.visibility(shot, moment)?),
+        OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
+        OutputChoice::Visibility => Picture::Visibility(technique.visibility(shot, moment)?),
     })
 }
 

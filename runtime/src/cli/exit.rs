@@ -2,6 +2,7 @@
 
 use std::error::Error;
 use std::process::ExitCode;
+use sunbake::BakeError;
 use sunbake::disk::read::ReadError;
 use sunbake::scene::ErrorClass;
 use sunbake_runtime::gpu::GpuError;
@@ -39,6 +40,18 @@ impl From<StageError> for Failure {
             StageError::Set(ReadError::Io { .. } | ReadError::NotASet { .. }) => 2,
             StageError::Scene(error) if error.class() == ErrorClass::Io => 2,
             StageError::Set(_) | StageError::Scene(_) | StageError::Mismatch { .. } => 3,
+        };
+        Self { code, error: error.into() }
+    }
+}
+
+impl From<BakeError> for Failure {
+    fn from(error: BakeError) -> Self {
+        let code = match &error {
+            BakeError::Load(load) if load.class() == ErrorClass::Io => 2,
+            BakeError::Write(_) => 2,
+            BakeError::Threads { .. } => 5,
+            _ => 3,
         };
         Self { code, error: error.into() }
     }

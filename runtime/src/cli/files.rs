@@ -64,6 +64,18 @@ pub fn write_rgb(path: &Path, picture: &Raster<[u8; 3]>) -> Result<(), Failure> 
     write_png(path, picture.size, png::ColorType::Rgb, png::BitDepth::Eight, picture.pixels.as_flattened())
 }
 
+/// Grey sRGB codes of visibility, as sheets and animations show it: full sun is white.
+pub fn displayed_visibility(visibility: &Raster<f32>, supersample: u32) -> Raster<[u8; 3]> {
+    let reduced = visibility.reduced(supersample);
+    let grey = |&v: &f32| [(v.clamp(0.0, 1.0) * 255.0).round() as u8; 3];
+    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(grey).collect() }
+}
+
+/// Makes a folder, and those above it.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|e| cannot_write(folder, &e))
+}
+
 fn write_exr<const N: usize>(path: &Path, size: [u32; 2], channels: [(&str, Vec<f32>); N]) -> Result<(), Failure> {
     let channels = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, FlatSamples::F32(samples)));
     let channels = AnyChannels::sort(channels.collect());
@@ -93,4 +105,22 @@ fn write_png(
 /// A file that cannot be written.
 pub fn cannot_write(path: &Path, reason: &dyn std::fmt::Display) -> Failure {
     Failure::io(format!("cannot write {}: {reason}; choose another place with -o", path.display()))
+}
+
+/// Writes pictures as an animated PNG that plays for ever, `delay_ms` each.
+pub fn write_animation(path: &Path, pictures: &[Raster<[u8; 3]>], delay_ms: u16) -> Result<(), Failure> {
+    let Some(size) = pictures.first().map(|picture| picture.size) else { return Ok(()) };
+    let write = || -> Result<(), png::EncodingError> {
+        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, size[0], size[1]);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_animated(pictures.len() as u32, 0)?;
+        encoder.set_frame_delay(delay_ms, 1000)?;
+        let mut writer = encoder.write_header()?;
+        for picture in pictures {
+            writer.write_image_data(picture.pixels.as_flattened())?;
+        }
+        writer.finish()
+    };
+    write().map_err(|e| cannot_write(path, &e))
 }

@@ -2,10 +2,13 @@
 
 mod args;
 mod artist;
+mod demo;
 mod exit;
 mod files;
 mod frame;
+mod frames;
 mod place;
+mod terminal;
 mod when;
 
 use args::{Args, Command};
@@ -33,5 +36,7 @@ pub fn run() -> ExitCode {
     };
     exit::report(|| match args.command {
         Command::Frame(args) => frame::run(&args),
+        Command::Frames(args) => frames::run(&args),
+        Command::Demo(args) => demo::run(&args),
     })
 }

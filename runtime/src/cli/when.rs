@@ -1,7 +1,7 @@
 //! Times of day, as asked for and as printed.
 
 use super::exit::Failure;
-use sunbake::sun::SunPath;
+use sunbake::sun::{SunPath, clock_text, parse_clock};
 
 /// A time, as asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,24 +15,17 @@ pub enum When {
 /// Reads `HH:MM` or a fraction.
 pub fn parse_when(text: &str) -> Result<When, String> {
     let wrong = || format!("`{text}` is not a time: give HH:MM, or a fraction of the path from 0 to 1");
-    if let Some((hours, minutes)) = text.split_once(':') {
-        let number = |text: &str, end: u32| text.parse::<u32>().ok().filter(|n| *n < end).ok_or_else(wrong);
-        return Ok(When::Clock(f64::from(number(hours, 24)? * 60 + number(minutes, 60)?)));
+    if text.contains(':') {
+        return parse_clock(text).map(When::Clock).map_err(|_| wrong());
     }
     let t = text.parse().map_err(|_| wrong())?;
     if (0.0..=1.0).contains(&t) { Ok(When::Path(t)) } else { Err(wrong()) }
 }
 
-/// `HH:MM` of minutes after midnight; days before and after show the same clock.
-pub fn clock(minutes: f64) -> String {
-    let minutes = minutes.round().rem_euclid(1440.0) as u32;
-    format!("{:02}:{:02}", minutes / 60, minutes % 60)
-}
-
 /// What to call a moment of a path: its clock time or, where there is no clock, its path time.
 pub fn label(path: Option<&SunPath>, t: f64) -> String {
     match path.and_then(|path| path.clock_min(t)) {
-        Some(minutes) => clock(minutes),
+        Some(minutes) => clock_text(minutes),
         None => format!("t {t:.2}"),
     }
 }
@@ -58,9 +51,9 @@ impl When {
             Some(t) => Ok(t.clamp(0.0, 1.0)),
             None => Err(Failure::usage(format!(
                 "{} is outside this set's path, which runs from {} to {}: give a time between, or bake with --window",
-                clock(minutes),
-                clock(start),
-                clock(end)
+                clock_text(minutes),
+                clock_text(start),
+                clock_text(end)
             ))),
         }
     }
@@ -89,7 +82,7 @@ mod tests {
     #[test]
     fn times_are_read_and_refused() {
         assert_eq!((parse_when("06:30"), parse_when("0.25")), (Ok(When::Clock(390.0)), Ok(When::Path(0.25))));
-        for bad in ["", "24:00", "12:60", "-1", "1.01", "NaN", "noon", "1:2:3"] {
+        for bad in ["", "24:01", "12:60", "-1", "1.01", "NaN", "noon", "1:2:3"] {
             assert!(parse_when(bad).is_err(), "{bad}");
         }
     }

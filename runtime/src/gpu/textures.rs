@@ -23,14 +23,12 @@ impl BaseTextures {
             return Ok(Self { layout: None, bind_groups: BTreeMap::new(), texture_count: 0 });
         }
         let layout = layout(gpu);
-        let mut views = BTreeMap::new();
-        let mut samplers = BTreeMap::new();
-        for key in keys {
-            if !views.contains_key(&key.image) {
-                views.insert(key.image, view(gpu, stage, key.image)?);
-            }
-            samplers.entry(key.wrap).or_insert_with(|| sampler(gpu, key.wrap));
-        }
+        let images: BTreeSet<usize> = keys.iter().map(|key| key.image).collect();
+        let wraps: BTreeSet<[u32; 2]> = keys.iter().map(|key| key.wrap).collect();
+        let views: BTreeMap<usize, wgpu::TextureView> =
+            images.into_iter().map(|image| Ok((image, view(gpu, stage, image)?))).collect::<Result<_, GpuError>>()?;
+        let samplers: BTreeMap<[u32; 2], wgpu::Sampler> =
+            wraps.into_iter().map(|wrap| (wrap, sampler(gpu, wrap))).collect();
         let group = |key: &TextureKey| {
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("base colour"),

@@ -23,11 +23,6 @@ impl<'g> BakedGpu<'g> {
     pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
         Ok(Self { renderer: Renderer::new(gpu, stage, filter)? })
     }
-
-    /// What has been built so far.
-    pub fn census(&self) -> Census {
-        self.renderer.census()
-    }
 }
 
 impl Technique for BakedGpu<'_> {
@@ -45,5 +40,9 @@ impl Technique for BakedGpu<'_> {
 
     fn bytes(&self) -> u64 {
         self.renderer.census().map_bytes
+    }
+
+    fn census(&self) -> Option<Census> {
+        Some(self.renderer.census())
     }
 }

@@ -11,7 +11,7 @@ pub use baked_cpu::BakedCpu;
 pub use baked_gpu::BakedGpu;
 pub use truth::Truth;
 
-use crate::gpu::GpuError;
+use crate::gpu::{Census, GpuError};
 use crate::image::Raster;
 use crate::light::Moment;
 use crate::shade;
@@ -34,4 +34,9 @@ pub trait Technique {
 
     /// Bytes it keeps from frame to frame, beyond the scene itself.
     fn bytes(&self) -> u64;
+
+    /// What was built on the GPU for it; none where the CPU draws.
+    fn census(&self) -> Option<Census> {
+        None
+    }
 }
