@@ -5,7 +5,8 @@
 //! those of clear air with a little dust.
 //!
 //! **Brightness.** A noon is some thousand times brighter than a dusk. The eye follows, a picture with a fixed exposure
-//! cannot: brightness is therefore compressed by a power ([`ADAPTATION`]), as if the eye had gone most of the way.
+//! cannot: the sun's brightness is therefore compressed by a power ([`ADAPTATION`]), and all light is lifted as what level
+//! ground receives falls ([`EYE`]), as if the eye had gone part of the way.
 //!
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
 //! is measured: it is there so that the shadows under study fall in a believable light.
@@ -24,6 +25,10 @@ use sunbake_shaders::FrameUniform;
 const AIR_DEPTH: Vec3 = Vec3::new(0.10, 0.165, 0.31);
 /// Power by which brightness is compressed.
 const ADAPTATION: f32 = 0.42;
+/// Power by which all light is lifted as the light on level ground falls below [`NOON_LIGHT`].
+const EYE: f32 = 0.38;
+/// Luminance of the light on level ground under a high sun.
+const NOON_LIGHT: f32 = 1.9;
 /// What a surface sends back of the light that reaches it, for the ground's glow.
 const GROUND_ALBEDO: Vec3 = Vec3::new(0.36, 0.31, 0.25);
 /// Weights of red, green and blue in luminance (ITU-R BT.709).
@@ -132,22 +137,37 @@ impl Daylight {
         let through = (AIR_DEPTH * -air_mass(height)).exp();
         let strength = through.dot(LUMINANCE);
         let tint = soften(through / strength.max(1e-9));
-        let sun_light = tint * (1.9 * strength.powf(ADAPTATION));
+        let sun_light = tint * (1.65 * strength.powf(ADAPTATION));
         // Below the horizon the sky goes on darkening through twilight.
         let dusk = (1.0 + height.min(0.0) * 6.0).clamp(0.05, 1.0);
-        let level = (0.16 + 0.34 * up.sqrt()) * dusk;
-        let warmth = (-up * 9.0).exp();
-        let sky_light = Vec3::new(0.62, 0.78, 1.0).lerp(Vec3::new(0.80, 0.72, 0.88), warmth) * level;
+        let level = (0.15 + 0.27 * up.sqrt()) * dusk;
+        let warmth = (-up * 6.0).exp();
+        let sky_light = Vec3::new(0.66, 0.80, 1.0).lerp(Vec3::new(0.84, 0.74, 0.90), warmth) * level;
         let ground_light = GROUND_ALBEDO * (sun_light * up + sky_light);
-        let horizon = Vec3::new(0.95, 1.12, 1.30).lerp(Vec3::new(1.75, 1.05, 0.72), warmth) * (level * 1.25);
-        Self {
+        let horizon = Vec3::new(1.05, 1.25, 1.42).lerp(Vec3::new(2.1, 1.22, 0.78), warmth) * (level * 1.25);
+        let light = Self {
             sun_light,
             sky_light,
             ground_light,
-            zenith: Vec3::new(0.30, 0.58, 1.20).lerp(Vec3::new(0.42, 0.55, 1.02), warmth) * level,
+            zenith: Vec3::new(0.26, 0.55, 1.22).lerp(Vec3::new(0.40, 0.56, 1.05), warmth) * level,
             horizon,
-            glow: tint * (1.1 * strength.powf(0.30) * dusk),
+            glow: tint * (1.0 * strength.powf(0.30) * dusk),
             haze: horizon * 0.45 + ground_light * 0.35,
+        };
+        light.exposed_for((sun_light * up + sky_light).dot(LUMINANCE))
+    }
+
+    /// The same light, seen by an eye that has got used to what level ground receives.
+    fn exposed_for(self, on_level_ground: f32) -> Self {
+        let gain = (NOON_LIGHT / on_level_ground.max(0.02)).powf(EYE).max(1.0);
+        Self {
+            sun_light: self.sun_light * gain,
+            sky_light: self.sky_light * gain,
+            ground_light: self.ground_light * gain,
+            zenith: self.zenith * gain,
+            horizon: self.horizon * gain,
+            glow: self.glow * gain,
+            haze: self.haze * gain,
         }
     }
 }
