@@ -87,7 +87,7 @@ fn no_triangles(path: &Path, drawn: &Drawn, log: Log) -> LoadError {
     let Dropped { repeated_index, zero_area, non_finite } = drawn.dropped;
     let counted = [(repeated_index, "repeat an index"), (zero_area, "have no area"), (non_finite, "are not finite")];
     let dropped = counted.iter().filter(|(count, _)| *count > 0);
-    let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} that it has {what}")).collect();
+    let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} of its triangles {what}")).collect();
     reasons.extend(log.into_sentences().into_iter().take(3));
     if reasons.is_empty() {
         reasons.push("no node of its default scene draws a mesh; put its meshes under nodes of that scene".into());
