@@ -11,6 +11,7 @@ mod arrange;
 mod build;
 mod coverage;
 mod existing;
+mod gaps;
 mod gutter;
 mod outline;
 mod overlap;
