@@ -18,7 +18,17 @@ fn main() {
     println!("pages of {page_size}, rays:{rays}, {} thread(s)", rayon::current_num_threads());
     println!(
         "{:<20}{:>10}{:>10} |{:>8}{:>8}{:>8}{:>11}{:>8}{:>8} s |{:>11}{:>10}",
-        "scene", "triangles", "texels", "load", "unwrap", "bvh", "visibility", "encode", "write", "ktexels/s", "Mrays/s"
+        "scene",
+        "triangles",
+        "texels",
+        "load",
+        "unwrap",
+        "bvh",
+        "visibility",
+        "encode",
+        "write",
+        "ktexels/s",
+        "Mrays/s"
     );
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
     for file in std::iter::once(own).chain(shared_scenes()) {

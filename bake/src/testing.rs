@@ -76,7 +76,8 @@ impl SceneBuilder {
     /// Adds an image and gives back its index with the builder.
     pub fn image(mut self, width: u32, height: u32, rgba: Vec<[u8; 4]>) -> (Self, usize) {
         let name = "made by code".into();
-        self.scene.images.push(Image { name, width, height, rgba, encoded: Vec::new(), mime_type: "image/png" });
+        let encoded = png_of(width, height, &rgba);
+        self.scene.images.push(Image { name, width, height, rgba, encoded, mime_type: "image/png" });
         let index = self.scene.images.len() - 1;
         (self, index)
     }
@@ -100,6 +101,15 @@ impl SceneBuilder {
         }
         self.scene
     }
+}
+
+fn png_of(width: u32, height: u32, rgba: &[[u8; 4]]) -> Vec<u8> {
+    let mut encoded = Vec::new();
+    let mut encoder = png::Encoder::new(&mut encoded, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    let written = encoder.write_header().and_then(|mut w| w.write_image_data(rgba.as_flattened()));
+    written.expect("as many texels as the size says");
+    encoded
 }
 
 /// An opaque, single-sided, mid-grey material.

@@ -1,10 +1,14 @@
 //! What the hard-case tests share: scenes by code, points on them, suns, and oracles that are not the code under test.
 
 use glam::{DVec3, Vec3};
-use std::path::PathBuf;
-use sunbake::atlas::SurfacePoint;
-use sunbake::scene::{Geometry, Scene};
-use sunbake::sun::{SunArc, SunPath};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use sunbake::atlas::{Layout, LayoutOrigin, SurfacePoint};
+use sunbake::disk::read::{BakedSet, read};
+use sunbake::progress::Silent;
+use sunbake::scene::{Geometry, Mesh, Scene};
+use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
 use sunbake::visibility::{Engine, Intervals, RayEngine};
 
@@ -96,4 +100,67 @@ pub fn shared_scene(name: &str) -> Option<PathBuf> {
 /// Turns triangles over.
 pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
     triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
+}
+
+/// Writes a scene made by code as `NAME.glb` in a folder, without unique coordinates.
+pub fn write_scene(scene: &Scene, folder: &Path, name: &str) -> PathBuf {
+    let layouts: Vec<Layout> = scene.meshes.iter().map(layout_without_coordinates).collect();
+    let file = folder.join(format!("{name}.glb"));
+    let written = sunbake::glb::write_glb(scene, &layouts).expect("a small scene");
+    std::fs::write(&file, written.bytes).expect("a folder to write in");
+    file
+}
+
+fn layout_without_coordinates(mesh: &Mesh) -> Layout {
+    let count = mesh.positions.len();
+    Layout {
+        origin: LayoutOrigin::Unwrapped,
+        vertices: (0..count as u32).collect(),
+        uvs: vec![glam::Vec2::ZERO; count],
+        indices: mesh.indices.clone(),
+    }
+}
+
+/// Midsummer at 40 degrees north.
+pub fn june_day() -> DayRequest {
+    DayRequest {
+        latitude_deg: 40.0,
+        longitude_deg: 0.0,
+        date: "2026-06-21".parse().expect("a date"),
+        utc_offset_h: Some(0.0),
+        north_deg: 0.0,
+        window: None,
+    }
+}
+
+/// A small, quick bake: a page of 128, 64 suns, 16 bits.
+pub fn quick() -> BakeSettings {
+    BakeSettings {
+        page_size_texels: 128,
+        engine: EngineChoice::Rays(64),
+        ..BakeSettings::standard(SunRequest::Day(june_day()))
+    }
+}
+
+/// Bakes a scene made by code into `FOLDER/NAME` and reads the set back.
+pub fn bake_scene(scene: &Scene, settings: &BakeSettings, folder: &Path, name: &str) -> BakedSet {
+    let file = write_scene(scene, folder, name);
+    let target = folder.join(name);
+    sunbake::bake(&file, &target, true, settings, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
+    read(&target).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Runs the `sunbake` command of this build.
+pub fn sunbake_command() -> Command {
+    let mut folder = std::env::current_exe().expect("a test has a file");
+    folder.pop();
+    if folder.ends_with("deps") {
+        folder.pop();
+    }
+    Command::new(folder.join(format!("sunbake{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Standard error as text.
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
 }

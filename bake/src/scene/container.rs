@@ -17,11 +17,11 @@ pub(super) struct Container<'a> {
 
 /// Reads a whole regular file, if it fits into the budget.
 pub(super) fn read_file(path: &Path, budget: &Budget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
-    let fail = |cause: std::io::Error| LoadError::read(path, cause, advice);
+    let fail = |cause: std::io::Error| LoadError::read(path, &cause, advice);
     let meta = std::fs::metadata(path).map_err(fail)?;
     if !meta.is_file() {
         let cause = if meta.is_dir() { "it is a folder" } else { "it is not a regular file" };
-        return Err(LoadError::read(path, cause, advice));
+        return Err(LoadError::read(path, &cause, advice));
     }
     budget.take(meta.len(), 1, || format!("{}", path.display()))?;
     let mut bytes = Vec::new();
@@ -86,8 +86,11 @@ fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a
     Ok((json, None))
 }
 
-/// Takes the next chunk off the front: its kind and its data. Fewer than eight bytes are padding.
-fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<([u8; 4], &'a [u8])>, LoadError> {
+/// A kind and its data.
+type Chunk<'a> = ([u8; 4], &'a [u8]);
+
+/// Takes the next chunk off the front. Fewer than eight bytes are padding.
+fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<Chunk<'a>>, LoadError> {
     let Some((length, after)) = word(rest) else { return Ok(None) };
     let Some((kind, after)) = word(after) else { return Ok(None) };
     let Some((data, tail)) = after.split_at_checked(length as usize) else {

@@ -153,7 +153,7 @@ impl LoadError {
         Self::Structure { place: place.into(), problem: problem.into() }
     }
 
-    pub(super) fn read(path: &Path, cause: impl ToString, advice: &'static str) -> Self {
+    pub(super) fn read(path: &Path, cause: &dyn ToString, advice: &'static str) -> Self {
         Self::Read { path: path.to_owned(), cause: cause.to_string(), advice }
     }
 }

@@ -39,10 +39,10 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let tree = nodes::read(&doc, &mut log)?;
     let reader = Reader { doc: &doc, buffers: &buffers, budget: &budget };
     let mut drawn = primitives::read(reader, &tree, &mut log)?;
-    let bounds = keep_placeable(&mut drawn, &tree, &mut log);
-    let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let triangle_count: u64 = drawn.draws.iter().map(|&(_, mesh)| triangle_count(&drawn, mesh)).sum();
     budget.take(triangle_count, BYTES_PER_TRIANGLE, || format!("placing {triangle_count} triangles"))?;
+    let bounds = keep_placeable(&mut drawn, &tree, &mut log);
+    let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let drafts = materials::read(&doc, &mut drawn, &mut log)?;
     let needed = materials::needed_images(&drafts);
     let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, &budget, &needed)?;
@@ -87,7 +87,7 @@ fn no_triangles(path: &Path, drawn: &Drawn, log: Log) -> LoadError {
     let Dropped { repeated_index, zero_area, non_finite } = drawn.dropped;
     let counted = [(repeated_index, "repeat an index"), (zero_area, "have no area"), (non_finite, "are not finite")];
     let dropped = counted.iter().filter(|(count, _)| *count > 0);
-    let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} that it has {what}")).collect();
+    let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} of its triangles {what}")).collect();
     reasons.extend(log.into_sentences().into_iter().take(3));
     if reasons.is_empty() {
         reasons.push("no node of its default scene draws a mesh; put its meshes under nodes of that scene".into());

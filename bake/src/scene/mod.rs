@@ -47,13 +47,13 @@ pub use materials::BLEND_CUTOFF;
 pub struct Scene {
     /// Which file this came from.
     pub source: Source,
-    /// The nodes of the scene that is drawn, parents before children.
+    /// The nodes of the scene that is drawn, in the order of a walk that enters each node before its children.
     pub nodes: Vec<Node>,
     /// Drawn primitives, each once however many nodes draw it.
     pub meshes: Vec<Mesh>,
-    /// What is drawn where: one per (node, primitive).
+    /// What is drawn where: one per (node, primitive), in the order of nodes and then of primitives.
     pub instances: Vec<Instance>,
-    /// Materials; the last one is glTF's default material when some primitive names none.
+    /// Materials that are drawn, in file order; the last one is glTF's default when some primitive names none.
     pub materials: Vec<Material>,
     /// Images that some material uses, decoded.
     pub images: Vec<Image>,

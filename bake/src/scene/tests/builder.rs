@@ -83,8 +83,8 @@ impl Builder {
     pub fn accessor(&mut self, component: u32, shape: &str, count: usize, bytes: &[u8], more: Value) -> usize {
         let view = self.view(bytes);
         let mut accessor = json!({ "bufferView": view, "componentType": component, "type": shape, "count": count });
-        for (key, value) in more.as_object().into_iter().flatten() {
-            accessor[key] = value.clone();
+        if let Value::Object(more) = more {
+            more.into_iter().for_each(|(key, value)| accessor[key] = value);
         }
         self.push("accessors", accessor)
     }
@@ -108,7 +108,9 @@ impl Builder {
 
     /// Adds a mesh of one primitive.
     pub fn mesh(&mut self, primitive: Value) -> usize {
-        self.push("meshes", json!({ "primitives": [primitive] }))
+        let mut mesh = json!({});
+        mesh["primitives"] = Value::Array(vec![primitive]);
+        self.push("meshes", mesh)
     }
 
     /// Adds a mesh of [`TRIANGLE`], with more attributes.

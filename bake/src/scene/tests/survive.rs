@@ -80,6 +80,7 @@ fn nasty() -> Vec<Value> {
         json!(65535),
         json!(1u64 << 32),
         json!(u64::MAX),
+        json!(usize::MAX - 1),
         json!(1e300),
         json!(-1e-300),
         json!(0.5),
@@ -106,7 +107,7 @@ fn no_change_to_the_json_panics() {
     let (values, places) = (nasty(), count(&root));
     let limits = LoadLimits { max_memory_bytes: 1 << 24 };
     let (mut random, mut loaded) = (Random(1), 0);
-    for round in 0..4000 {
+    for round in 0..2000 {
         let mut bad = root.clone();
         for _ in 0..1 + round % 3 {
             let mut place = 1 + random.below(places - 1);
@@ -115,7 +116,7 @@ fn no_change_to_the_json_panics() {
         let bytes = Builder::glb_of(bad.to_string().as_bytes(), good.binary());
         loaded += usize::from(load_limited("bad.glb", &bytes, &limits).is_ok());
     }
-    assert!(loaded > 400, "the changes are too cruel to test much: {loaded} of 4000 still load");
+    assert!(loaded > 200, "the changes are too cruel to test much: {loaded} of 2000 still load");
 }
 
 #[test]
@@ -123,7 +124,7 @@ fn no_change_to_the_bytes_panics() {
     let good = everything().glb();
     let limits = LoadLimits { max_memory_bytes: 1 << 24 };
     let mut random = Random(2);
-    for round in 0..3000 {
+    for round in 0..2000 {
         let mut bad = good.clone();
         for _ in 0..1 + round % 5 {
             let at = random.below(bad.len());
