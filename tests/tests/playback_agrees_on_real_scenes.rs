@@ -13,19 +13,20 @@ use sunbake_tests::{june_day, shared_scene};
 const SIZE: [u32; 2] = [256, 144];
 
 /// A bake that is quick and has something of everything: what agreement needs is maps, not good ones.
-fn settings() -> BakeSettings {
+fn settings(page_size_texels: u32) -> BakeSettings {
     BakeSettings {
-        page_size_texels: 1024,
+        page_size_texels,
         engine: EngineChoice::Rays(16),
         ..BakeSettings::standard(SunRequest::Day(june_day()))
     }
 }
 
-fn assert_twins_agree_on(name: &str, scene: &Path) {
+fn assert_twins_agree_on(name: &str, scene: &Path, page_size_texels: u32) {
     let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
     let folder = tempfile::tempdir().unwrap();
     let set = folder.path().join("set");
-    sunbake::bake(scene, &set, false, &settings(), &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
+    sunbake::bake(scene, &set, false, &settings(page_size_texels), &Silent)
+        .unwrap_or_else(|error| panic!("{name}: {error}"));
     let stage = Stage::read(&set).unwrap();
     let camera = Camera::default_of(&stage, f64::from(SIZE[0]) / f64::from(SIZE[1]));
     let shot = Shot::new(&stage, View::new(&camera, SIZE, &stage.scene));
@@ -39,34 +40,34 @@ fn assert_twins_agree_on(name: &str, scene: &Path) {
     }
 }
 
-fn shared(name: &str) {
+fn shared(name: &str, page_size_texels: u32) {
     if let Some(scene) = shared_scene(name) {
-        assert_twins_agree_on(name, &scene);
+        assert_twins_agree_on(name, &scene, page_size_texels);
     }
 }
 
 #[test]
 fn twins_agree_on_our_gas_station() {
     let scene = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
-    assert_twins_agree_on("our gas station", &scene);
+    assert_twins_agree_on("our gas station", &scene, 512);
 }
 
 #[test]
 fn twins_agree_on_a_model_railway_town() {
-    shared("littlest_tokyo/littlest_tokyo.glb");
+    shared("littlest_tokyo/littlest_tokyo.glb", 2048);
 }
 
 #[test]
 fn twins_agree_on_a_truck_and_its_town() {
-    shared("truck_town/truck_town.glb");
+    shared("truck_town/truck_town.glb", 512);
 }
 
 #[test]
 fn twins_agree_on_a_garden_bridge() {
-    shared("japanese_bridge_garden/japanese_bridge_garden.glb");
+    shared("japanese_bridge_garden/japanese_bridge_garden.glb", 512);
 }
 
 #[test]
 fn twins_agree_on_a_city_with_leaves() {
-    shared("osrf_city/osrf_city.glb");
+    shared("osrf_city/osrf_city.glb", 1024);
 }
