@@ -1,8 +1,8 @@
 //! A camera that shows a scene well: the file's first or, if it has none, one that looks from above and aside.
 //!
 //! What is worth showing is where the detail is. Points are drawn from the surfaces, triangles weighed by the square root
-//! of their area, so that one huge ground plane does not outweigh the town on it; the outermost few in a hundred are left
-//! out. Around their middle, candidates stand at several bearings and heights, each as far away as it takes to have the
+//! of their area but no triangle by much more than most, so that one huge ground plane does not outweigh the town on it; the
+//! outermost few in a hundred are left out. Around their middle, candidates stand at several bearings and heights, each as far away as it takes to have the
 //! points in the picture. The one that sees the most of them wins, with a preference for a view from the south-east and a
 //! quarter of the way up, where the sun comes from behind the camera's shoulder for most of the day. A camera inside a
 //! house, or behind a hill, sees next to nothing and loses.
@@ -16,10 +16,14 @@ use rayon::prelude::*;
 const FOV_Y_DEG: f64 = 38.0;
 /// Points that stand for the scene.
 const POINTS: usize = 1500;
+/// Largest weight of a triangle, in weights of a middling one.
+const MOST_WEIGHT: f64 = 4.0;
 /// Share of points left out at either end of each axis.
-const OUTLIERS: f64 = 0.03;
+const OUTLIERS: f64 = 0.05;
 /// Share of points that must be in the picture.
-const INSIDE: f64 = 0.97;
+const INSIDE: f64 = 0.95;
+/// How much further away than those need.
+const MARGIN: f64 = 1.15;
 /// Heights tried, in degrees above the horizon, with how much each is liked.
 const ELEVATIONS_DEG: [(f64, f64); 4] = [(15.0, 0.86), (25.0, 1.0), (38.0, 0.93), (60.0, 0.7)];
 /// Bearings tried.
@@ -77,17 +81,20 @@ fn liking(bearing_deg: f64, elevation_deg: f64) -> f64 {
 /// Points of the surfaces that are drawn, more of them where there is more detail.
 fn detail(stage: &Stage) -> Vec<DVec3> {
     let geometry = &stage.geometry;
-    let mut reached = Vec::new();
-    let mut total = 0.0;
-    for triangle in 0..geometry.triangles.len() {
+    let edge_m = |triangle: usize| {
         let [a, b, c] = geometry.triangles[triangle].map(|v| v.as_dvec3());
-        let is_drawn = !stage.sides(triangle).is_none();
-        total += if is_drawn { (b - a).cross(c - a).length().sqrt() } else { 0.0 };
-        reached.push(total);
-    }
-    if total <= 0.0 {
-        return Vec::new();
-    }
+        if stage.sides(triangle).is_none() { 0.0 } else { (b - a).cross(c - a).length().sqrt() }
+    };
+    let edges_m: Vec<f64> = (0..geometry.triangles.len()).map(edge_m).collect();
+    let mut sorted: Vec<f64> = edges_m.iter().copied().filter(|&edge| edge > 0.0).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(median) = sorted.get(sorted.len() / 2) else { return Vec::new() };
+    let mut total = 0.0;
+    let mut add = |edge: &f64| {
+        total += edge.min(MOST_WEIGHT * median);
+        total
+    };
+    let reached: Vec<f64> = edges_m.iter().map(&mut add).collect();
     let point = |i: usize| {
         let share = (i as f64 + 0.5) / POINTS as f64 * total;
         let triangle = reached.partition_point(|&r| r < share).min(reached.len() - 1);
@@ -101,21 +108,27 @@ fn detail(stage: &Stage) -> Vec<DVec3> {
 
 /// The middle of the points' bounds, outliers left out.
 fn middle(points: &[DVec3]) -> DVec3 {
-    let along = |axis: usize| {
-        let mut all: Vec<f64> = points.iter().map(|p| p[axis]).collect();
-        all.sort_by(f64::total_cmp);
-        let skip = (all.len() as f64 * OUTLIERS) as usize;
-        match (all.get(skip), all.get(all.len().saturating_sub(1 + skip))) {
-            (Some(low), Some(high)) => 0.5 * (low + high),
-            _ => 0.0,
-        }
-    };
-    DVec3::new(along(0), along(1), along(2))
+    let along = |axis: DVec3| middle_along(points, axis);
+    DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
+}
+
+/// The middle of where the points lie along an axis, outliers left out.
+fn middle_along(points: &[DVec3], axis: DVec3) -> f64 {
+    let mut all: Vec<f64> = points.iter().map(|p| p.dot(axis)).collect();
+    all.sort_by(f64::total_cmp);
+    let skip = (all.len() as f64 * OUTLIERS) as usize;
+    match (all.get(skip), all.get(all.len().saturating_sub(1 + skip))) {
+        (Some(low), Some(high)) => 0.5 * (low + high),
+        _ => 0.0,
+    }
 }
 
 /// The camera in a direction from the middle, as near as has most points in the picture.
 fn standing_back(points: &[DVec3], middle: DVec3, towards: DVec3, aspect: f64) -> Option<Camera> {
     let camera = Camera::look_at(middle + towards, middle, FOV_Y_DEG.to_radians())?;
+    // The middle of the box is not the middle of the picture: seen aslant, what is high lies further up.
+    let shift = |axis: DVec3| axis * (middle_along(points, axis) - middle.dot(axis));
+    let middle = middle + shift(camera.right) + shift(camera.up);
     let half_up = (0.5 * camera.fov_y_rad).tan();
     let needed = |p: &DVec3| {
         let from_middle = *p - middle;
@@ -126,7 +139,7 @@ fn standing_back(points: &[DVec3], middle: DVec3, towards: DVec3, aspect: f64) -
     distances.sort_by(f64::total_cmp);
     let distance = *distances.get((distances.len() as f64 * INSIDE) as usize)?;
     let distance = if distance > 0.0 { distance } else { return None };
-    Some(Camera { eye_m: middle + towards * distance, ..camera })
+    Some(Camera { eye_m: middle + towards * (MARGIN * distance), ..camera })
 }
 
 /// How many of the points can be seen.

@@ -8,6 +8,7 @@
 //! What the scene does not call for is not built: [`Census`] counts, and a test holds the counts against scenes.
 
 mod batch;
+mod buffers;
 mod census;
 mod device;
 mod maps;

@@ -1,6 +1,7 @@
 //! A stage on the GPU, and its frames.
 
-use super::batch::{Batch, BatchKey, Vertices, batches, wrap_code};
+use super::batch::{Batch, BatchKey, batches};
+use super::buffers::{frame_bindings, upload_streams};
 use super::census::Census;
 use super::device::{Gpu, GpuError};
 use super::maps::PageTextures;
@@ -14,9 +15,7 @@ use crate::stage::Stage;
 use crate::{Filter, View};
 use glam::Vec3;
 use std::collections::BTreeMap;
-use sunbake::scene::{Alpha, Material};
-use sunbake_shaders::{FrameUniform, MaterialUniform, Stream};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
+use sunbake_shaders::Stream;
 
 /// What a frame shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -244,74 +243,4 @@ impl<'g> Renderer<'g> {
 fn depth_key(key: &BatchKey) -> ProgramKey {
     let surface = if key.surface.is_cut { key.surface } else { Default::default() };
     ProgramKey::Surface(BatchKey { surface, page: 0, texture: None, ..*key })
-}
-
-fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream, wgpu::Buffer>, GpuError> {
-    let all: [(Stream, &[u8]); 4] = [
-        (Stream::Position, bytemuck::cast_slice(&vertices.positions)),
-        (Stream::Surface, bytemuck::cast_slice(&vertices.surfaces)),
-        (Stream::Texture, bytemuck::cast_slice(&vertices.textures)),
-        (Stream::Color, bytemuck::cast_slice(&vertices.colors)),
-    ];
-    let limit = gpu.device.limits().max_buffer_size;
-    let mut streams = BTreeMap::new();
-    for (stream, contents) in all.into_iter().filter(|(_, contents)| !contents.is_empty()) {
-        GpuError::check_limit("a vertex buffer, in bytes,", contents.len() as u64, limit)?;
-        let descriptor = BufferInitDescriptor { label: Some("vertices"), contents, usage: wgpu::BufferUsages::VERTEX };
-        streams.insert(stream, gpu.device.create_buffer_init(&descriptor));
-    }
-    Ok(streams)
-}
-
-fn frame_bindings(gpu: &Gpu, stage: &Stage) -> (wgpu::BindGroupLayout, wgpu::Buffer, wgpu::BindGroup) {
-    let device = &gpu.device;
-    let materials: Vec<MaterialUniform> = stage.scene.materials.iter().map(material_uniform).collect();
-    let materials = device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("materials"),
-        contents: bytemuck::cast_slice(&materials),
-        usage: wgpu::BufferUsages::STORAGE,
-    });
-    let frame = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("frame"),
-        size: size_of::<FrameUniform>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    };
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("frame"),
-        entries: &[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage)],
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("frame"),
-        layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: materials.as_entire_binding() },
-        ],
-    });
-    (layout, frame, group)
-}
-
-fn material_uniform(material: &Material) -> MaterialUniform {
-    let cutoff = match material.alpha {
-        Alpha::Cut { cutoff } => cutoff,
-        Alpha::Opaque | Alpha::Air => 0.0,
-    };
-    let wrap = material.base_color_texture.map_or([0; 2], |texture| texture.wrap.map(wrap_code));
-    MaterialUniform {
-        base_color: material.base_color.to_array(),
-        emissive: material.emissive.to_array(),
-        is_unlit: f32::from(u8::from(material.is_unlit)),
-        cutoff,
-        wrap_u: wrap[0],
-        wrap_v: wrap[1],
-        pad: 0.0,
-    }
 }

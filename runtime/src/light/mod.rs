@@ -137,10 +137,10 @@ impl Daylight {
         let through = (AIR_DEPTH * -air_mass(height)).exp();
         let strength = through.dot(LUMINANCE);
         let tint = soften(through / strength.max(1e-9));
-        let sun_light = tint * (1.65 * strength.powf(ADAPTATION));
+        let sun_light = tint * (1.62 * strength.powf(ADAPTATION));
         // Below the horizon the sky goes on darkening through twilight.
         let dusk = (1.0 + height.min(0.0) * 6.0).clamp(0.05, 1.0);
-        let level = (0.15 + 0.27 * up.sqrt()) * dusk;
+        let level = (0.17 + 0.31 * up.sqrt()) * dusk;
         let warmth = (-up * 6.0).exp();
         let sky_light = Vec3::new(0.66, 0.80, 1.0).lerp(Vec3::new(0.84, 0.74, 0.90), warmth) * level;
         let ground_light = GROUND_ALBEDO * (sun_light * up + sky_light);

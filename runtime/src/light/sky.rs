@@ -15,7 +15,8 @@ impl Moment {
         let air = light.horizon.lerp(light.zenith, up) + light.glow * aureole;
         let disc = if cos_sun > self.sun_cos_radius() && direction.y > 0.0 { 1.0 } else { 0.0 };
         let below = smoothstep(0.25, -direction.y);
-        air.lerp(light.haze, below) + light.sun_light * (8.0 * disc)
+        let depth = 1.0 - 0.45 * smoothstep(1.0, -direction.y);
+        air.lerp(light.haze * depth, below) + light.sun_light * (8.0 * disc)
     }
 }
 

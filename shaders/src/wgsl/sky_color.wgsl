@@ -9,5 +9,6 @@ fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let air = mix(frame.horizon, frame.zenith, up) + frame.glow * aureole;
     let disc = select(0.0, 1.0, cos_sun > frame.sun_cos_radius && direction.y > 0.0);
     let below = smoothstep(0.0, 0.25, -direction.y);
-    return mix(air, frame.haze, below) + frame.sun_light * (8.0 * disc);
+    let depth = 1.0 - 0.45 * smoothstep(0.0, 1.0, -direction.y);
+    return mix(air, frame.haze * depth, below) + frame.sun_light * (8.0 * disc);
 }
