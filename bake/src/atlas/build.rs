@@ -5,7 +5,7 @@ use super::existing::{self, CROWDED_SHARE};
 use super::unwrap::{self, Charts};
 use super::{Atlas, AtlasSettings, Density, Layout, LayoutOrigin, PageSize, Placement};
 use crate::scene::{Alpha, Scene};
-use glam::{DVec2, Vec2};
+use glam::Vec2;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use thiserror::Error;
@@ -93,10 +93,12 @@ pub fn build(
         return Ok(atlas);
     }
     let mut items = make_items(scene, settings, &drawn, &meter)?;
-    let mut warnings = Vec::new();
     loop {
-        let plan = find_plan(scene, settings, &mut items, &mut warnings, &meter)?;
-        let atlas = assemble(scene, &items, &plan, &warnings);
+        let mut warnings: Vec<_> = refusal_warning(scene, settings, &items).into_iter().collect();
+        let plan = find_plan(settings, &mut items, &mut warnings, &meter)?;
+        let mut atlas = assemble(scene, &items, &plan);
+        warnings.extend(fit_warning(scene, settings, &items, &atlas));
+        atlas.warnings = warnings;
         let crowded = crowded_items(scene, &items, &atlas);
         if crowded.is_empty() {
             return Ok(atlas);
@@ -105,7 +107,6 @@ pub fn build(
             let mesh = scene.instances[items[item].instances[0].0].mesh;
             items[item].form = Form::Charts(unwrap_mesh(scene, mesh, &meter)?);
         }
-        warnings.clear();
     }
 }
 
@@ -201,6 +202,16 @@ fn density_warning(settings: &AtlasSettings, reached: f64) -> Option<String> {
     })
 }
 
+/// Says how many meshes brought a `TEXCOORD_1` that could not be used.
+fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item]) -> Option<String> {
+    let mesh = |item: &Item| &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let is_refused = |item: &&Item| matches!(item.form, Form::Charts(_)) && mesh(item).texcoords[1].is_some();
+    let count = items.iter().filter(is_refused).count();
+    (settings.keeps_existing && count > 0).then(|| {
+        format!("TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or is crowded: they were unwrapped anew")
+    })
+}
+
 fn file_layout(scene: &Scene, mesh: usize) -> Layout {
     let mut layout = Layout::empty(scene, mesh);
     layout.origin = LayoutOrigin::File;
@@ -240,24 +251,21 @@ fn unwrap_mesh(scene: &Scene, mesh: usize, meter: &Meter) -> Result<Charts, Atla
 
 /// Finds the density, and places everything at it.
 fn find_plan(
-    scene: &Scene,
     settings: &AtlasSettings,
     items: &mut [Item],
     warnings: &mut Vec<String>,
     meter: &Meter,
 ) -> Result<Plan, AtlasError> {
     match settings.density {
-        Density::TexelsPerMetre(density) => plan_at_density(scene, settings, density, items, warnings, meter),
+        Density::TexelsPerMetre(density) => plan_at_density(settings, density, items, meter),
         Density::Pages(pages) => plan_for_pages(settings, pages, items, warnings, meter),
     }
 }
 
 fn plan_at_density(
-    scene: &Scene,
     settings: &AtlasSettings,
     density: f64,
     items: &mut [Item],
-    warnings: &mut Vec<String>,
     meter: &Meter,
 ) -> Result<Plan, AtlasError> {
     let texels = (items.iter().map(Item::area_m2).sum::<f64>() * density * density) as u64;
@@ -272,17 +280,6 @@ fn plan_at_density(
             if *share < LEAST_SHARE || !meter.reach(UNWRAP_SHARE) {
                 return Err(stopped_or_too_small(settings, items, meter));
             }
-        }
-        if *share < 1.0 {
-            let name = scene.meshes[scene.instances[items[index].instances[0].0].mesh]
-                .name
-                .as_deref()
-                .unwrap_or("without a name");
-            let reached = density * *share;
-            warnings.push(format!(
-                "mesh {name} does not fit a page of {} texels: it gets {reached:.3} texels a metre",
-                settings.page_size_texels
-            ));
         }
     }
     items.iter_mut().zip(shares).for_each(|(item, share)| item.share = share);
@@ -355,7 +352,7 @@ fn stopped_or_too_small(settings: &AtlasSettings, items: &[Item], meter: &Meter)
 }
 
 /// The atlas of a plan.
-fn assemble(scene: &Scene, items: &[Item], plan: &Plan, warnings: &[String]) -> Atlas {
+fn assemble(scene: &Scene, items: &[Item], plan: &Plan) -> Atlas {
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     plan.write_placements(items, &mut placements);
     let mut layouts: Vec<Option<Layout>> = vec![None; scene.meshes.len()];
@@ -379,7 +376,7 @@ fn assemble(scene: &Scene, items: &[Item], plan: &Plan, warnings: &[String]) -> 
         placements,
         texels_per_metre: 0.0,
         chart_count: items.iter().map(Item::chart_count).sum(),
-        warnings: warnings.to_vec(),
+        warnings: Vec::new(),
     };
     let area_m2: f64 = items.iter().map(Item::area_m2).sum();
     atlas.texels_per_metre = if area_m2 > 0.0 { (covered_texels(scene, &atlas) / area_m2).sqrt() } else { 0.0 };
@@ -388,17 +385,43 @@ fn assemble(scene: &Scene, items: &[Item], plan: &Plan, warnings: &[String]) -> 
 
 /// Area of all triangles on all pages.
 fn covered_texels(scene: &Scene, atlas: &Atlas) -> f64 {
-    let of_instance = |(index, placement): (usize, &Placement)| {
-        let layout = &atlas.layouts[scene.instances[index].mesh];
-        let page = atlas.pages[placement.page as usize].as_dvec2();
-        let triangles = layout.indices.chunks_exact(3).map(|t| {
-            let [a, b, c] = [0, 1, 2].map(|k| layout.uvs[t[k] as usize].as_dvec2());
-            (b - a).perp_dot(c - a).abs() * 0.5
-        });
-        let scale: DVec2 = placement.scale.as_dvec2() * page;
-        triangles.sum::<f64>() * scale.x * scale.y
+    (0..scene.instances.len())
+        .into_par_iter()
+        .map(|i| texels_of_instance(scene, atlas, i))
+        .collect::<Vec<_>>()
+        .iter()
+        .sum()
+}
+
+fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
+    let placement = &atlas.placements[instance];
+    if placement.is_empty() {
+        return 0.0;
+    }
+    let layout = &atlas.layouts[scene.instances[instance].mesh];
+    let triangles = layout.indices.chunks_exact(3).map(|t| {
+        let [a, b, c] = [0, 1, 2].map(|k| layout.uvs[t[k] as usize].as_dvec2());
+        (b - a).perp_dot(c - a).abs() * 0.5
+    });
+    let scale = placement.scale.as_dvec2() * atlas.pages[placement.page as usize].as_dvec2();
+    triangles.sum::<f64>() * scale.x * scale.y
+}
+
+/// Says which mesh did not get the density asked for.
+fn fit_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item], atlas: &Atlas) -> Option<String> {
+    let Density::TexelsPerMetre(asked) = settings.density else { return None };
+    let reached = |item: &Item| {
+        let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.0)).sum();
+        (texels / item.area_m2()).sqrt()
     };
-    atlas.placements.iter().enumerate().filter(|(_, p)| !p.is_empty()).map(of_instance).sum()
+    let short: Vec<_> = items.iter().map(|i| (reached(i), i)).filter(|(d, _)| *d < 0.9 * asked).collect();
+    let (least, item) = short.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mesh = &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let (count, side) = (short.len(), settings.page_size_texels);
+    let name = mesh.name.as_deref().unwrap_or("without a name");
+    Some(format!(
+        "{count} meshes do not fit a page of {side} texels at {asked} texels a metre; mesh {name} gets {least:.3}: use larger pages"
+    ))
 }
 
 /// Items with a layout of the file's whose islands lie too close together at the size they got.

@@ -17,6 +17,8 @@ mod outline;
 mod overlap;
 mod samples;
 mod strip;
+#[cfg(test)]
+mod tests;
 mod tile;
 mod unwrap;
 
