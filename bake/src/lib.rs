@@ -1,7 +1,7 @@
 //! sunbake: bakes when every texel of a static scene sees the sun.
 //!
 //! The method is chapter 13 of *GPU Gems*, "Interactive Visibility with Occlusion Interval Maps" (Donnelly and Demers,
-//! 2004). Data flows one way, and the modules read in that order:
+//! 2004). Data flows one way, and the modules read in that order; [`bake`] is the flow itself:
 //!
 //! ```text
 //! scene -> atlas -> visibility -> maps -> disk
@@ -10,7 +10,20 @@
 //! ```
 
 pub mod atlas;
+mod bake;
+pub mod disk;
 pub mod glb;
+mod loss;
+pub mod maps;
+pub mod plan;
+pub mod progress;
 pub mod scene;
+pub mod settings;
 pub mod sun;
+#[doc(hidden)]
+pub mod testing;
+pub mod texels;
+pub mod trace;
 pub mod visibility;
+
+pub use bake::{BakeError, BakeReport, Prepared, bake, prepare};

@@ -1,1 +1,166 @@
-//! x
+//! What the hard-case tests share: scenes by code, points on them, suns, and oracles that are not the code under test.
+
+use glam::{DVec3, Vec3};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use sunbake::atlas::{Layout, LayoutOrigin, SurfacePoint};
+use sunbake::disk::read::{BakedSet, read};
+use sunbake::progress::Silent;
+use sunbake::scene::{Geometry, Mesh, Scene};
+use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::sun::{DayRequest, SunArc, SunPath};
+use sunbake::trace::Tracer;
+use sunbake::visibility::{Engine, Intervals, RayEngine};
+
+/// A scene with what it takes to trace it.
+pub struct Traced {
+    /// The scene.
+    pub scene: Scene,
+    /// Its triangles.
+    pub geometry: Geometry,
+    /// Its hierarchy.
+    pub tracer: Tracer,
+}
+
+impl Traced {
+    /// Makes a scene ready.
+    pub fn new(scene: Scene) -> Self {
+        let geometry = Geometry::new(&scene);
+        let tracer = Tracer::new(&scene, &geometry);
+        Self { scene, geometry, tracer }
+    }
+
+    /// The point of a triangle (flat index) with these weights of its second and third corner.
+    pub fn point(&self, triangle: usize, barycentric: [f64; 2]) -> SurfacePoint {
+        SurfacePoint {
+            position_m: self.geometry.point(triangle, barycentric),
+            normal: self.geometry.normal(triangle),
+            is_double_sided: self.scene.material(self.geometry.instance[triangle] as usize).is_double_sided,
+            triangle: triangle as u32,
+        }
+    }
+
+    /// A point given in world space, taken to lie on a triangle's plane.
+    pub fn point_at(&self, world: DVec3, triangle: usize) -> SurfacePoint {
+        SurfacePoint { position_m: world - self.scene.centre_m, ..self.point(triangle, [0.25, 0.25]) }
+    }
+
+    /// When a point sees the sun, by `count` rays.
+    pub fn lit_by_rays(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> Intervals {
+        RayEngine::new(&self.tracer, path, count).session().lit(point)
+    }
+}
+
+/// The sun rises at azimuth `from` and moves at constant speed on the great circle through the zenith down to the
+/// opposite horizon. `from` is a level unit vector.
+pub fn over_the_top(from: DVec3) -> SunPath {
+    let axis = from.cross(DVec3::Y);
+    path_of(SunArc {
+        axis,
+        zero: from,
+        declination_rad: 0.0,
+        hour_angle_rad: [0.0, std::f64::consts::PI],
+        t: [0.0, 1.0],
+    })
+}
+
+/// A sun that all but stands still in one direction.
+pub fn standing(direction: DVec3) -> SunPath {
+    let zero = direction.normalize();
+    path_of(SunArc {
+        axis: zero.any_orthonormal_vector(),
+        zero,
+        declination_rad: 0.0,
+        hour_angle_rad: [-1e-9, 1e-9],
+        t: [0.0, 1.0],
+    })
+}
+
+/// A path of one arc, of a light without width.
+pub fn path_of(arc: SunArc) -> SunPath {
+    SunPath::new(vec![arc], 0.0, 720.0).expect("the arc is well formed")
+}
+
+/// Where the shared scenes lie, if they are here: `SUNBAKE_SHARED`, or `shared` beside the repository.
+pub fn shared_folder() -> Option<PathBuf> {
+    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from);
+    folder.join("scenes").is_dir().then_some(folder)
+}
+
+/// A shared scene, or a line that says that its test did nothing for want of it.
+pub fn shared_scene(name: &str) -> Option<PathBuf> {
+    let file = shared_folder().map(|folder| folder.join("scenes").join(name)).filter(|file| file.is_file());
+    if file.is_none() {
+        eprintln!("not tested: the shared scene {name} is not on this machine (set SUNBAKE_SHARED)");
+    }
+    file
+}
+
+/// Turns triangles over.
+pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
+    triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
+}
+
+/// Writes a scene made by code as `NAME.glb` in a folder, without unique coordinates.
+pub fn write_scene(scene: &Scene, folder: &Path, name: &str) -> PathBuf {
+    let layouts: Vec<Layout> = scene.meshes.iter().map(layout_without_coordinates).collect();
+    let file = folder.join(format!("{name}.glb"));
+    let written = sunbake::glb::write_glb(scene, &layouts).expect("a small scene");
+    std::fs::write(&file, written.bytes).expect("a folder to write in");
+    file
+}
+
+fn layout_without_coordinates(mesh: &Mesh) -> Layout {
+    let count = mesh.positions.len();
+    Layout {
+        origin: LayoutOrigin::Unwrapped,
+        vertices: (0..count as u32).collect(),
+        uvs: vec![glam::Vec2::ZERO; count],
+        indices: mesh.indices.clone(),
+    }
+}
+
+/// Midsummer at 40 degrees north.
+pub fn june_day() -> DayRequest {
+    DayRequest {
+        latitude_deg: 40.0,
+        longitude_deg: 0.0,
+        date: "2026-06-21".parse().expect("a date"),
+        utc_offset_h: Some(0.0),
+        north_deg: 0.0,
+        window: None,
+    }
+}
+
+/// A small, quick bake: a page of 128, 64 suns, 16 bits.
+pub fn quick() -> BakeSettings {
+    BakeSettings {
+        page_size_texels: 128,
+        engine: EngineChoice::Rays(64),
+        ..BakeSettings::standard(SunRequest::Day(june_day()))
+    }
+}
+
+/// Bakes a scene made by code into `FOLDER/NAME` and reads the set back.
+pub fn bake_scene(scene: &Scene, settings: &BakeSettings, folder: &Path, name: &str) -> BakedSet {
+    let file = write_scene(scene, folder, name);
+    let target = folder.join(name);
+    sunbake::bake(&file, &target, true, settings, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
+    read(&target).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Runs the `sunbake` command of this build.
+pub fn sunbake_command() -> Command {
+    let mut folder = std::env::current_exe().expect("a test has a file");
+    folder.pop();
+    if folder.ends_with("deps") {
+        folder.pop();
+    }
+    Command::new(folder.join(format!("sunbake{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Standard error as text.
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}

@@ -13,6 +13,7 @@ mod coverage;
 mod existing;
 mod gaps;
 mod gutter;
+mod of_set;
 mod outline;
 mod overlap;
 mod samples;

@@ -17,8 +17,8 @@ pub(super) struct Written {
 }
 
 pub(super) fn write(scene: &Scene, binary: &mut Binary) -> Written {
-    let mut written = Written::default();
-    written.images = scene.images.iter().map(|picture| image(picture, binary)).collect();
+    let images = scene.images.iter().map(|picture| image(picture, binary)).collect();
+    let mut written = Written { images, ..Written::default() };
     for material in &scene.materials {
         let value = written.material(material);
         written.materials.push(value);

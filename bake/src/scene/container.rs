@@ -17,11 +17,11 @@ pub(super) struct Container<'a> {
 
 /// Reads a whole regular file, if it fits into the budget.
 pub(super) fn read_file(path: &Path, budget: &Budget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
-    let fail = |cause: std::io::Error| LoadError::read(path, cause, advice);
+    let fail = |cause: std::io::Error| LoadError::read(path, &cause, advice);
     let meta = std::fs::metadata(path).map_err(fail)?;
     if !meta.is_file() {
         let cause = if meta.is_dir() { "it is a folder" } else { "it is not a regular file" };
-        return Err(LoadError::read(path, cause, advice));
+        return Err(LoadError::read(path, &cause, advice));
     }
     budget.take(meta.len(), 1, || format!("{}", path.display()))?;
     let mut bytes = Vec::new();
@@ -76,7 +76,7 @@ fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a
     }
     let (kind, json) = chunk(path, &mut rest)?.ok_or_else(|| truncated(path, "it has a header and no chunks"))?;
     if kind != *b"JSON" {
-        return Err(truncated(path, format!("its first chunk is {kind:?} instead of JSON")));
+        return Err(truncated(path, format!("its first chunk is \"{}\" instead of JSON", kind.escape_ascii())));
     }
     while let Some((kind, data)) = chunk(path, &mut rest)? {
         if kind == *b"BIN\0" {
@@ -86,8 +86,11 @@ fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a
     Ok((json, None))
 }
 
-/// Takes the next chunk off the front: its kind and its data. Fewer than eight bytes are padding.
-fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<([u8; 4], &'a [u8])>, LoadError> {
+/// A kind and its data.
+type Chunk<'a> = ([u8; 4], &'a [u8]);
+
+/// Takes the next chunk off the front. Fewer than eight bytes are padding.
+fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<Chunk<'a>>, LoadError> {
     let Some((length, after)) = word(rest) else { return Ok(None) };
     let Some((kind, after)) = word(after) else { return Ok(None) };
     let Some((data, tail)) = after.split_at_checked(length as usize) else {
@@ -104,12 +107,26 @@ fn parse_json(path: &Path, json: &[u8]) -> Result<Value, LoadError> {
     if json.first() != Some(&b'{') {
         return Err(not_gltf(path, "it begins neither with the letters glTF nor with a JSON object"));
     }
-    serde_json::from_slice(json).map_err(|error| LoadError::Json {
+    let parsed = serde_json::from_slice(json).map_err(|error| LoadError::Json {
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
         cause: strip_position(&error.to_string()),
-    })
+    });
+    parsed.map(whole_numbers)
+}
+
+/// JSON knows one kind of number, so `24.0` may stand for an index. The parser has bounded the depth.
+fn whole_numbers(value: Value) -> Value {
+    match value {
+        Value::Number(number) => match number.as_f64().filter(|x| number.is_f64() && x.fract() == 0.0) {
+            Some(x) if (1.0..1e15).contains(&x) || x.to_bits() == 0 => Value::from(x as u64),
+            _ => Value::Number(number),
+        },
+        Value::Array(list) => list.into_iter().map(whole_numbers).collect(),
+        Value::Object(map) => map.into_iter().map(|(key, value)| (key, whole_numbers(value))).collect(),
+        other => other,
+    }
 }
 
 /// serde_json ends its messages with the position, which our message states already.

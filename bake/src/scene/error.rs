@@ -119,7 +119,7 @@ pub enum LoadError {
         parent: usize,
     },
     /// Nothing to bake.
-    #[error("{path} draws no triangles: {cause}; check that meshes hang under nodes of the default scene", path = .path.display())]
+    #[error("{path} draws no triangles: {cause}", path = .path.display())]
     NoTriangles {
         /// The file.
         path: PathBuf,
@@ -153,7 +153,7 @@ impl LoadError {
         Self::Structure { place: place.into(), problem: problem.into() }
     }
 
-    pub(super) fn read(path: &Path, cause: impl ToString, advice: &'static str) -> Self {
+    pub(super) fn read(path: &Path, cause: &dyn ToString, advice: &'static str) -> Self {
         Self::Read { path: path.to_owned(), cause: cause.to_string(), advice }
     }
 }

@@ -41,7 +41,8 @@ pub(super) fn read(
 ) -> Result<(Vec<Image>, BTreeMap<usize, Decoded>), LoadError> {
     let mut decoded = BTreeMap::new();
     let mut encoded = Vec::new();
-    for file_index in 0..doc.count::<document::Image>().max(needed.last().map_or(0, |last| last + 1)) {
+    let count = doc.count::<document::Image>();
+    for file_index in (0..count).chain(needed.range(count..).copied()) {
         let is_needed = needed.contains(&file_index);
         let name = name(doc, file_index);
         match bytes(doc, file_index, buffers, fetcher, is_needed) {
@@ -89,7 +90,8 @@ fn bytes(
     let image: document::Image = doc.get(index)?;
     let place = place::<document::Image>(index);
     match (image.uri, image.buffer_view) {
-        (Some(uri), _) if is_needed || !uri.starts_with("data:") => fetcher.fetch(&place, &uri),
+        (Some(uri), _) if is_needed => fetcher.fetch(&place, &uri),
+        (Some(uri), _) => fetcher.hash_only(&place, &uri).map(|()| Vec::new()),
         (None, Some(view)) if is_needed => Ok(buffers.view(doc, view)?.0.to_vec()),
         (None, None) => Err(LoadError::structure(place, "it has neither a uri nor a bufferView")),
         _ => Ok(Vec::new()),

@@ -1,7 +1,7 @@
 //! From a file to a [`Scene`]: the flow of loading, one step a module.
 
 use super::{
-    Camera, Instance, LoadError, LoadLimits, Mesh, Scene, Source,
+    Camera, Dropped, Instance, LoadError, LoadLimits, Mesh, Scene, Source,
     accessors::Reader,
     cameras, container,
     container::Container,
@@ -15,7 +15,10 @@ use super::{
     resources::{Buffers, Fetcher},
 };
 use glam::{DMat4, DVec3};
-use std::path::Path;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 /// Loads a glTF or GLB file.
 ///
@@ -36,10 +39,10 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let tree = nodes::read(&doc, &mut log)?;
     let reader = Reader { doc: &doc, buffers: &buffers, budget: &budget };
     let mut drawn = primitives::read(reader, &tree, &mut log)?;
-    let bounds = keep_placeable(&mut drawn, &tree, &mut log);
-    let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let triangle_count: u64 = drawn.draws.iter().map(|&(_, mesh)| triangle_count(&drawn, mesh)).sum();
     budget.take(triangle_count, BYTES_PER_TRIANGLE, || format!("placing {triangle_count} triangles"))?;
+    let bounds = keep_placeable(&mut drawn, &tree, &mut log);
+    let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let drafts = materials::read(&doc, &mut drawn, &mut log)?;
     let needed = materials::needed_images(&drafts);
     let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, &budget, &needed)?;
@@ -81,20 +84,13 @@ fn source(path: &Path, fetcher: Fetcher) -> Source {
 }
 
 fn no_triangles(path: &Path, drawn: &Drawn, log: Log) -> LoadError {
-    let mut reasons = log.into_sentences();
-    reasons.truncate(3);
-    let dropped = drawn.dropped;
-    if dropped.total() > 0 {
-        reasons.push(format!(
-            "of {} triangles {} repeat an index, {} have no area and {} are not finite",
-            dropped.total(),
-            dropped.repeated_index,
-            dropped.zero_area,
-            dropped.non_finite
-        ));
-    }
+    let Dropped { repeated_index, zero_area, non_finite } = drawn.dropped;
+    let counted = [(repeated_index, "repeat an index"), (zero_area, "have no area"), (non_finite, "are not finite")];
+    let dropped = counted.iter().filter(|(count, _)| *count > 0);
+    let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} of its triangles {what}")).collect();
+    reasons.extend(log.into_sentences().into_iter().take(3));
     if reasons.is_empty() {
-        reasons.push("no node of its scene draws a mesh".into());
+        reasons.push("no node of its default scene draws a mesh; put its meshes under nodes of that scene".into());
     }
     LoadError::NoTriangles { path: path.to_owned(), cause: reasons.join("; ") }
 }
@@ -129,7 +125,8 @@ impl Bounds {
         let size = (self.high - self.low).max_element().max(f64::MIN_POSITIVE);
         let step = (size.log2().floor() - 10.0).exp2();
         let centre = (self.low + self.high) * 0.5;
-        let rounded = (centre / step).round() * step;
+        // Adding zero turns -0 into 0.
+        let rounded = (centre / step).round() * step + DVec3::ZERO;
         if rounded.is_finite() { rounded } else { centre }
     }
 }
@@ -153,18 +150,15 @@ fn keep_placeable(drawn: &mut Drawn, tree: &Tree, log: &mut Log) -> Option<Bound
 }
 
 fn drop_undrawn(drawn: &mut Drawn) {
-    let mut new_from_old = vec![None; drawn.meshes.len()];
-    drawn.draws.iter().for_each(|&(_, mesh)| new_from_old[mesh] = Some(0));
-    let mut count = 0;
-    for slot in new_from_old.iter_mut().flatten() {
-        *slot = count;
-        count += 1;
+    let kept: BTreeSet<usize> = drawn.draws.iter().map(|&(_, mesh)| mesh).collect();
+    let new_from_old: BTreeMap<usize, usize> = kept.iter().enumerate().map(|(new, &old)| (old, new)).collect();
+    let mut old = 0..;
+    drawn.meshes.retain(|_| old.next().is_some_and(|old| kept.contains(&old)));
+    let mut old = 0..;
+    drawn.file_material.retain(|_| old.next().is_some_and(|old| kept.contains(&old)));
+    for (_, mesh) in &mut drawn.draws {
+        *mesh = new_from_old.get(mesh).copied().unwrap_or_default();
     }
-    let mut keep = new_from_old.iter().map(Option::is_some);
-    drawn.meshes.retain(|_| keep.next().unwrap_or(true));
-    let mut keep = new_from_old.iter().map(Option::is_some);
-    drawn.file_material.retain(|_| keep.next().unwrap_or(true));
-    drawn.draws.iter_mut().for_each(|(_, mesh)| *mesh = new_from_old[*mesh].unwrap_or_default());
 }
 
 fn instance(tree: &Tree, (node, mesh): (usize, usize), centre_m: DVec3) -> Instance {

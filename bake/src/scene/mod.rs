@@ -10,6 +10,7 @@
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 
 mod accessors;
+pub mod alpha;
 mod cameras;
 mod container;
 mod document;
@@ -25,6 +26,8 @@ mod pose;
 mod primitives;
 mod refuse;
 mod resources;
+#[cfg(test)]
+mod tests;
 mod triangles;
 
 pub use error::{ErrorClass, LoadError};
@@ -44,13 +47,13 @@ pub use materials::BLEND_CUTOFF;
 pub struct Scene {
     /// Which file this came from.
     pub source: Source,
-    /// The nodes of the scene that is drawn, parents before children.
+    /// The nodes of the scene that is drawn, in the order of a walk that enters each node before its children.
     pub nodes: Vec<Node>,
     /// Drawn primitives, each once however many nodes draw it.
     pub meshes: Vec<Mesh>,
-    /// What is drawn where: one per (node, primitive).
+    /// What is drawn where: one per (node, primitive), in the order of nodes and then of primitives.
     pub instances: Vec<Instance>,
-    /// Materials; the last one is glTF's default material when some primitive names none.
+    /// Materials that are drawn, in file order; the last one is glTF's default when some primitive names none.
     pub materials: Vec<Material>,
     /// Images that some material uses, decoded.
     pub images: Vec<Image>,
@@ -58,7 +61,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Direction towards the sun, world space, unit length: the first `KHR_lights_punctual` directional light.
     pub sun_direction: Option<DVec3>,
-    /// World position of the origin of bake space.
+    /// World position of the origin of bake space: the centre of the scene's bounding box, rounded to a power of two
+    /// near a thousandth of its size, so that subtracting it is exact.
     pub centre_m: DVec3,
     /// Half the size of the scene's bounding box along each axis, in metres.
     pub half_extent_m: DVec3,
@@ -84,7 +88,7 @@ pub struct Node {
     pub name: Option<String>,
     /// Index of the parent in [`Scene::nodes`]; always smaller than the node's own.
     pub parent: Option<usize>,
-    /// The node's own transform.
+    /// The node's own transform. Nodes that flatten their volume to nothing, and all below them, are left out.
     pub parent_from_node: DMat4,
     /// Product of all transforms up to the root.
     pub world_from_node: DMat4,
@@ -101,7 +105,8 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit shading normals, object space; absent: flat shading.
     pub normals: Option<Vec<Vec3>>,
-    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them.
+    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them. (Where the base colour wants a set beyond those, that set
+    /// stands in the first place.) A texture whose set is absent shows its texel at (0, 0) everywhere.
     pub texcoords: [Option<Vec<Vec2>>; 2],
     /// Linear RGBA vertex colour, multiplied with the material's base colour.
     pub colors: Option<Vec<Vec4>>,

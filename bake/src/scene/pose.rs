@@ -22,6 +22,18 @@ pub(super) struct Pose {
     weights: Vec<f32>,
 }
 
+/// Where the joints stand. Worked out once, and only if there is a skin.
+#[derive(Default)]
+pub(super) struct Skeletons {
+    world_from_file_node: Option<Vec<DMat4>>,
+}
+
+impl Skeletons {
+    fn world_from_file_nodes(&mut self, tree: &Tree) -> &[DMat4] {
+        self.world_from_file_node.get_or_insert_with(|| tree.world_from_file_nodes())
+    }
+}
+
 /// A vertex's joints and their weights, in fours.
 type Influences = Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>;
 
@@ -30,7 +42,7 @@ impl Pose {
     pub fn of_node(
         reader: Reader,
         tree: &Tree,
-        world_from_file_node: &[DMat4],
+        skeletons: &mut Skeletons,
         node: usize,
         mesh: &document::Mesh,
     ) -> Result<Self, LoadError> {
@@ -41,7 +53,7 @@ impl Pose {
         let weights = file.weights.clone().or_else(|| mesh.weights.clone()).unwrap_or_default();
         let object_from_world = drawn.world_from_node.inverse();
         let object_from_bind = match file.skin {
-            Some(skin) => joint_matrices(reader, skin, world_from_file_node)?
+            Some(skin) => joint_matrices(reader, skin, skeletons.world_from_file_nodes(tree))?
                 .into_iter()
                 .map(|world_from_bind| object_from_world * world_from_bind)
                 .collect(),
@@ -63,7 +75,7 @@ impl Pose {
         positions: &mut [Vec3],
         normals: Option<&mut Vec<Vec3>>,
     ) -> Result<(), LoadError> {
-        let mut normals = normals.map(Vec::as_mut_slice).unwrap_or_default();
+        let normals = normals.map(Vec::as_mut_slice).unwrap_or_default();
         for (target, &weight) in primitive.targets.iter().flatten().zip(&self.weights) {
             if weight != 0.0 {
                 add_target(reader, target.get("POSITION"), weight, positions)?;
@@ -71,7 +83,7 @@ impl Pose {
             }
         }
         if !self.object_from_bind.is_empty() {
-            self.bend(&influences(reader, primitive)?, positions, &mut normals);
+            self.bend(&influences(reader, primitive)?, positions, normals);
         }
         Ok(())
     }
@@ -114,6 +126,7 @@ fn joint_matrices(reader: Reader, skin: usize, world_from_file_node: &[DMat4]) -
         Some(accessor) => reader.floats::<16>(accessor)?,
         None => Vec::new(),
     };
+    reader.budget.take(skin.joints.len() as u64, size_of::<DMat4>() as u64, || place.clone())?;
     let matrix = |(at, &joint): (usize, &usize)| {
         let world_from_joint = world_from_file_node
             .get(joint)

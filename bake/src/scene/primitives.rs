@@ -6,14 +6,14 @@ use super::{
     document::{self, Primitive, place},
     limits::Log,
     materials,
-    nodes::Tree,
+    nodes::{Tree, label},
     normals,
-    pose::Pose,
+    pose::{Pose, Skeletons},
     refuse,
     triangles::{self, Topology},
 };
-use glam::{DMat4, Vec2, Vec3, Vec4};
-use std::collections::HashMap;
+use glam::{Vec2, Vec3, Vec4};
+use std::collections::{HashMap, hash_map::Entry};
 
 /// What the nodes draw.
 #[derive(Default)]
@@ -29,37 +29,37 @@ pub(super) struct Drawn {
 /// A mesh in the file and, where a node bends it, that node.
 type PosedMesh = (usize, Option<usize>);
 
+/// What an instance takes, here and later on.
+const BYTES_PER_DRAW: u64 = 256;
+
+/// What a primitive takes beside its vertices. Counted so that a small file cannot ask for endless reading.
+const BYTES_PER_PRIMITIVE: u64 = 1024;
+
 /// Reads what the nodes of a tree draw.
 pub(super) fn read(reader: Reader, tree: &Tree, log: &mut Log) -> Result<Drawn, LoadError> {
     let mut drawn = Drawn::default();
     let mut known: HashMap<PosedMesh, Vec<usize>> = HashMap::new();
-    let mut worlds: Option<Vec<DMat4>> = None;
+    let mut skeletons = Skeletons::default();
     for (node, &file_index) in tree.file_index.iter().enumerate() {
         let Some(file) = tree.file.get(file_index) else { continue };
         let Some(mesh_index) = file.mesh else { continue };
         let is_posed = file.skin.is_some() || file.weights.is_some();
-        let key = (mesh_index, is_posed.then_some(node));
-        if !known.contains_key(&key) {
-            let mesh: document::Mesh = reader.doc.get(mesh_index)?;
-            let pose = match is_posed {
-                true => Pose::of_node(
-                    reader,
-                    tree,
-                    worlds.get_or_insert_with(|| tree.world_from_file_nodes()),
-                    node,
-                    &mesh,
-                )?,
-                false => Pose::of_mesh(&mesh),
-            };
-            if file.skin.is_some() {
-                log.warn(
-                    "its skin was baked as it stands when nothing is animated",
-                    super::nodes::label(file, file_index),
-                );
+        let meshes = match known.entry((mesh_index, is_posed.then_some(node))) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                if file.skin.is_some() {
+                    log.warn("its skin was baked as it stands when nothing is animated", label(file, file_index));
+                }
+                let mesh: document::Mesh = reader.doc.get(mesh_index)?;
+                let pose = match is_posed {
+                    true => Pose::of_node(reader, tree, &mut skeletons, node, &mesh)?,
+                    false => Pose::of_mesh(&mesh),
+                };
+                new.insert(drawn.read_mesh(reader, mesh_index, &mesh, &pose, log)?)
             }
-            known.insert(key, drawn.read_mesh(reader, mesh_index, &mesh, &pose, log)?);
-        }
-        drawn.draws.extend(known.get(&key).into_iter().flatten().map(|&mesh| (node, mesh)));
+        };
+        reader.budget.take(meshes.len() as u64, BYTES_PER_DRAW, || format!("drawing meshes[{mesh_index}] so often"))?;
+        drawn.draws.extend(meshes.iter().map(|&mesh| (node, mesh)));
     }
     Ok(drawn)
 }
@@ -78,6 +78,7 @@ impl Drawn {
         for (at, primitive) in mesh.primitives.iter().flatten().enumerate() {
             let name = mesh.name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
             let place = format!("{}{name} primitive {at}", place::<document::Mesh>(index));
+            reader.budget.take(1, BYTES_PER_PRIMITIVE, || place.clone())?;
             let material = known_material(reader, primitive, &place, log);
             let source = PrimitiveReader { reader, primitive, pose, place: &place, material };
             if let Some(mut read) = source.read(&mut self.dropped, log)? {
@@ -181,7 +182,7 @@ impl PrimitiveReader<'_> {
             match values.len() == count {
                 true => *slot = Some(gather(&values, used).into_iter().map(finite_texcoord).collect()),
                 false => {
-                    log.warn("it has texture coordinates of another count than its positions; left out", self.place)
+                    log.warn("it has texture coordinates of another count than its positions; left out", self.place);
                 }
             }
         }

@@ -4,7 +4,7 @@
 //! climbs out by `..` or by a symbolic link.
 
 use super::{
-    LoadError,
+    LoadError, LoadLimits,
     container::read_file,
     document::{self, Document, place},
     limits::Budget,
@@ -39,6 +39,17 @@ impl<'a> Fetcher<'a> {
         let bytes = read_file(&path, self.budget, "put it back beside the scene, or export the scene as one .glb")?;
         self.hasher.update(&bytes);
         Ok(bytes)
+    }
+
+    /// Reads a file for the sake of the hash, and keeps nothing of it.
+    pub fn hash_only(&mut self, place: &str, uri: &str) -> Result<(), LoadError> {
+        if uri.starts_with("data:") {
+            return Ok(());
+        }
+        let path = self.resolve(place, uri)?;
+        let passing = Budget::new(&LoadLimits { max_memory_bytes: self.budget.left() });
+        self.hasher.update(read_file(&path, &passing, "put it back beside the scene")?);
+        Ok(())
     }
 
     /// SHA-256 of everything fetched so far, in lower-case hex.

@@ -55,3 +55,50 @@ impl Intervals {
         Self::from_unsorted(pairs.collect())
     }
 }
+
+/// Intervals of many points, end to end in two arrays.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct IntervalTable {
+    ends: Vec<u32>,
+    intervals: Vec<[f64; 2]>,
+}
+
+impl IntervalTable {
+    /// Adds the next point's.
+    pub fn push(&mut self, intervals: &Intervals) {
+        self.intervals.extend_from_slice(intervals.as_slice());
+        self.ends.push(self.intervals.len() as u32);
+    }
+
+    /// Each point's, in order.
+    pub fn iter(&self) -> impl Iterator<Item = Intervals> + '_ {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| Intervals(self.intervals[start as usize..end as usize].to_vec()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overlaps_touches_and_disorder_join() {
+        let joined = Intervals::from_unsorted(vec![[0.5, 0.7], [0.1, 0.2], [0.2, 0.3], [0.6, 0.9]]);
+        assert_eq!(joined.as_slice(), [[0.1, 0.3], [0.5, 0.9]]);
+    }
+
+    #[test]
+    fn empty_backward_outside_and_nan_intervals_vanish() {
+        let raw = vec![[0.3, 0.3], [0.5, 0.4], [f64::NAN, 0.5], [0.5, f64::NAN], [1.5, 2.0], [-1.0, -0.5]];
+        assert_eq!(Intervals::from_unsorted(raw), Intervals::never());
+        assert_eq!(Intervals::from_unsorted(vec![[-1.0, 2.0]]), Intervals::always());
+    }
+
+    #[test]
+    fn a_table_gives_back_what_was_pushed() {
+        let rows = [Intervals::always(), Intervals::never(), Intervals::from_unsorted(vec![[0.1, 0.2], [0.4, 0.5]])];
+        let mut table = IntervalTable::default();
+        rows.iter().for_each(|row| table.push(row));
+        assert_eq!(table.iter().collect::<Vec<_>>(), rows);
+    }
+}

@@ -6,5 +6,63 @@
 //! the run time knows which.
 
 pub mod intervals;
+mod rays;
 
-pub use intervals::Intervals;
+pub use intervals::{IntervalTable, Intervals};
+pub use rays::RayEngine;
+
+use crate::atlas::SurfacePoint;
+use rayon::prelude::*;
+
+/// A way to find lit intervals. Implementations: [`RayEngine`].
+pub trait Engine: Sync {
+    /// Its name with its parameters, as on the command line.
+    fn name(&self) -> String;
+
+    /// Starts on a run of neighbouring points. What a session learns from one point it may use for the next, so long as
+    /// no answer depends on it: the same point has the same answer in any session.
+    fn session(&self) -> Box<dyn Session + '_>;
+}
+
+/// An engine at work on neighbouring points, one after the other.
+pub trait Session {
+    /// When the point sees the sun.
+    fn lit(&mut self, point: &SurfacePoint) -> Intervals;
+
+    /// Work done since the session started.
+    fn work(&self) -> Work;
+}
+
+/// Work done, by kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Rays traced.
+    pub rays: u64,
+}
+
+/// How many neighbouring points a session is given.
+const RUN: usize = 1024;
+
+/// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points.
+pub fn find_lit(
+    engine: &dyn Engine,
+    point_count: usize,
+    point: impl Fn(usize) -> SurfacePoint + Sync,
+    on_progress: impl Fn(usize) + Sync,
+) -> (Vec<IntervalTable>, Work) {
+    let runs: Vec<(IntervalTable, Work)> = (0..point_count.div_ceil(RUN))
+        .into_par_iter()
+        .map(|run| {
+            let range = run * RUN..point_count.min((run + 1) * RUN);
+            let mut session = engine.session();
+            let mut table = IntervalTable::default();
+            for index in range.clone() {
+                table.push(&session.lit(&point(index)));
+            }
+            on_progress(range.len());
+            (table, session.work())
+        })
+        .collect();
+    let work = Work { rays: runs.iter().map(|(_, work)| work.rays).sum() };
+    (runs.into_iter().map(|(table, _)| table).collect(), work)
+}

@@ -1,0 +1,85 @@
+//! Seconds of every stage of a bake, with texels and rays a second: `cargo bench -p sunbake`.
+//!
+//! Our own scene, and three shared ones where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
+//! repository). Arguments after `--` set the page size and the number of rays: `cargo bench -p sunbake -- 1024 256`.
+
+use std::path::{Path, PathBuf};
+use sunbake::progress::Silent;
+use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::sun::DayRequest;
+
+const SHARED: [&str; 3] =
+    ["truck_town/truck_town.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
+
+fn main() {
+    let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
+    let page_size = numbers.first().copied().unwrap_or(1024);
+    let rays = numbers.get(1).copied().unwrap_or(256);
+    println!("pages of {page_size}, rays:{rays}, {} thread(s)", rayon::current_num_threads());
+    println!(
+        "{:<20}{:>10}{:>10} |{:>8}{:>8}{:>8}{:>11}{:>8}{:>8} s |{:>11}{:>10}",
+        "scene",
+        "triangles",
+        "texels",
+        "load",
+        "unwrap",
+        "bvh",
+        "visibility",
+        "encode",
+        "write",
+        "ktexels/s",
+        "Mrays/s"
+    );
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
+    for file in std::iter::once(own).chain(shared_scenes()) {
+        row(&file, page_size as u32, rays);
+    }
+}
+
+fn shared_scenes() -> Vec<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join("scenes");
+    let (present, absent): (Vec<_>, Vec<_>) = SHARED.iter().map(|name| folder.join(name)).partition(|f| f.is_file());
+    absent.iter().for_each(|file| println!("not on this machine: {}", file.display()));
+    present
+}
+
+fn row(file: &Path, page_size_texels: u32, rays: usize) {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    let target = std::env::temp_dir().join(format!("sunbake-bench-{}-{name}", std::process::id()));
+    let day = DayRequest {
+        latitude_deg: 35.0,
+        longitude_deg: -116.0,
+        date: "2026-06-21".parse().expect("a date"),
+        utc_offset_h: Some(-7.0),
+        north_deg: 0.0,
+        window: None,
+    };
+    let settings = BakeSettings {
+        page_size_texels,
+        engine: EngineChoice::Rays(rays),
+        ..BakeSettings::standard(SunRequest::Day(day))
+    };
+    match sunbake::bake(file, &target, true, &settings, &Silent) {
+        Err(error) => println!("{name:<20} {error}"),
+        Ok(report) => {
+            let stats = &report.manifest.stats;
+            let s = &stats.seconds;
+            println!(
+                "{name:<20}{:>10}{:>10} |{:>8.2}{:>8.2}{:>8.2}{:>11.2}{:>8.2}{:>8.2} s |{:>11.1}{:>10.2}",
+                stats.triangles,
+                stats.texels,
+                s.load,
+                s.unwrap,
+                s.bvh,
+                s.visibility,
+                s.encode,
+                s.write,
+                stats.texels as f64 / s.visibility / 1e3,
+                stats.rays as f64 / s.visibility / 1e6
+            );
+        }
+    }
+    // The next run replaces what cannot be removed now.
+    let _ = std::fs::remove_dir_all(&target);
+}

@@ -1,0 +1,223 @@
+//! Every option, with its range and its default.
+
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use sunbake::settings::EngineChoice;
+use sunbake::sun::Date;
+
+/// Bakes when every texel of a glTF scene sees the sun.
+#[derive(Debug, Parser)]
+#[command(name = "sunbake", version, max_term_width = 110)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Bake a glTF scene into a set of maps.
+    Bake(Box<BakeArgs>),
+    /// Print what a set holds, what it cost and what it lost.
+    Inspect(InspectArgs),
+    /// Print some covered texels of a set as JSON lines.
+    Texels(TexelsArgs),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// A look in seconds: a page of 512, 64 suns, 8 bits.
+    Draft,
+    /// For a game level: a page of 2048, 256 suns, 16 bits.
+    Standard,
+    /// To keep: a page of 4096, 1024 suns, 16 bits, up to 8 layers.
+    Final,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct BakeArgs {
+    /// The scene: .gltf or .glb.
+    pub scene: PathBuf,
+    /// Folder to write the set to.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Replace an older set in that folder.
+    #[arg(long)]
+    pub force: bool,
+    /// Values for everything below that is not given.
+    #[arg(long, value_enum, default_value_t = Preset::Standard)]
+    pub preset: Preset,
+    #[command(flatten)]
+    pub sun: SunArgs,
+    #[command(flatten)]
+    pub cost: CostArgs,
+    #[command(flatten)]
+    pub output_manners: OutputArgs,
+    /// Print what would be baked and why, and bake nothing.
+    #[arg(long)]
+    pub explain: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Sun")]
+pub struct SunArgs {
+    /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
+    #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
+    pub place: Option<[f64; 2]>,
+    /// Local date. [default: 2026-06-21]
+    ///
+    /// The path runs from sunrise to sunset of that day unless --window says otherwise. Sunrise and sunset are those of
+    /// the centre of the sun's disc on a level horizon, without refraction.
+    #[arg(long, value_name = "YYYY-MM-DD")]
+    pub date: Option<Date>,
+    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    pub utc_offset: Option<f64>,
+    /// Degrees that north is turned from -Z towards +X.
+    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
+    pub north: f64,
+    /// Part of the day to bake, by local clocks; may pass midnight. [default: sunrise to sunset]
+    #[arg(long, value_name = "HH:MM-HH:MM", value_parser = parse_window)]
+    pub window: Option<[f64; 2]>,
+    /// A file of keyed sun directions instead of a place and a date.
+    ///
+    /// JSON: {"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}, ...]}, with an optional "t" in
+    /// each key and optional "angular_radius_deg" and "duration_min" beside "keys".
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["place", "date", "utc_offset", "window"])]
+    pub path: Option<PathBuf>,
+}
+
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Quality and cost")]
+pub struct CostArgs {
+    /// Edge of a page in texels, 64 to 16384. [default: 512, 2048 or 4096, by preset]
+    ///
+    /// Without --texels-per-metre the whole scene is fitted into one page of this size. Time and bytes grow with the
+    /// square.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(64..=16384))]
+    pub size: Option<u32>,
+    /// Texels per metre, on as many pages as that takes. [default: as dense as one page allows]
+    #[arg(long, value_name = "X", value_parser = parse_density)]
+    pub texels_per_metre: Option<f64>,
+    /// Empty texels around every chart, 1 to 16. [default: 2]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub padding: Option<u32>,
+    /// Bits of a stored time. [default: 8 in draft, else 16]
+    ///
+    /// 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the bytes.
+    #[arg(long, value_name = "8|16", value_parser = clap::value_parser!(u32).range(8..=16))]
+    pub bits: Option<u32>,
+    /// Most layers of four intervals a texel, 1 to 16. [default: 2, 4 or 8, by preset]
+    ///
+    /// Layers that no texel needs are not written. What does not fit is merged at the least loss, and reported.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub layers: Option<u32>,
+    /// How to find the times: rays:N asks N suns, 2 to 65536. [default: rays:64, 256 or 1024, by preset]
+    #[arg(long, value_name = "ENGINE", value_parser = parse_engine)]
+    pub engine: Option<EngineChoice>,
+    /// Threads; 0 is one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// Memory to plan for, as 8G or 500M; a bake that needs more is refused. [default: 4G, 8G or 16G, by preset]
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub max_memory: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, ClapArgs)]
+#[command(next_help_heading = "Output")]
+pub struct OutputArgs {
+    /// Print the result as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print every stage's seconds.
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct InspectArgs {
+    /// The set's folder.
+    pub set: PathBuf,
+    /// Print the manifest as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct TexelsArgs {
+    /// The set's folder.
+    pub set: PathBuf,
+    /// How many texels, at most all that are covered.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub count: usize,
+    /// Which texels: the same seed draws the same ones.
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub seed: u64,
+}
+
+fn parse_place(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("`{text}` is not a place: give degrees north and east, as 48.2,16.4");
+    let (latitude, longitude) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
+    Ok([number(latitude)?, number(longitude)?])
+}
+
+fn parse_window(text: &str) -> Result<[f64; 2], String> {
+    sunbake::sun::parse_window(text).map_err(|e| e.to_string())
+}
+
+fn parse_density(text: &str) -> Result<f64, String> {
+    let valid = |x: &f64| x.is_finite() && *x > 0.0;
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a positive number of texels per metre"))
+}
+
+fn parse_engine(text: &str) -> Result<EngineChoice, String> {
+    let wrong = || format!("`{text}` is not an engine: give rays:N with N from 2 to 65536");
+    let count = text.strip_prefix("rays:").and_then(|n| n.parse().ok()).ok_or_else(wrong)?;
+    (2..=65_536).contains(&count).then_some(EngineChoice::Rays(count)).ok_or_else(wrong)
+}
+
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    let wrong = || format!("`{text}` is not a size: give bytes with K, M or G, as 8G");
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" => 0,
+        "K" | "KB" | "KIB" => 10,
+        "M" | "MB" | "MIB" => 20,
+        "G" | "GB" | "GIB" => 30,
+        _ => return Err(wrong()),
+    };
+    let count: u64 = digits.parse().map_err(|_| wrong())?;
+    count.checked_mul(1 << shift).filter(|&bytes| bytes > 0).ok_or_else(wrong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_options_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_read_with_their_unit() {
+        assert_eq!(parse_bytes("500M"), Ok(500 << 20));
+        assert_eq!(parse_bytes("8g"), Ok(8 << 30));
+        assert_eq!(parse_bytes("77"), Ok(77));
+        for bad in ["", "G", "8T", "-1", "0", "99999999999999G"] {
+            assert!(parse_bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn engines_outside_their_range_are_refused() {
+        assert_eq!(parse_engine("rays:256"), Ok(EngineChoice::Rays(256)));
+        for bad in ["rays", "rays:", "rays:0", "rays:1", "rays:65537", "rays:-3", "sun:7"] {
+            assert!(parse_engine(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! `sunbake.json`: format version 1, field by field. Other programs read it, so a change here is a change of version.
+//!
+//! Lengths are metres, angles degrees, times fractions of the path unless a name says otherwise. Vectors are in the
+//! scene's world space. File names are relative to the manifest's folder.
+
+use serde::{Deserialize, Serialize};
+
+/// What `format` says.
+pub const FORMAT: &str = "sunbake";
+/// What `version` says.
+pub const VERSION: u32 = 1;
+
+/// The whole of `sunbake.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// Always [`VERSION`].
+    pub version: u32,
+    /// Program and version that wrote the set.
+    pub generator: String,
+    /// The scene file that was baked.
+    pub source: SourceEntry,
+    /// The scene with the bake's texture coordinates.
+    pub scene: SceneEntry,
+    /// The sun's path; null where the sun did not rise.
+    pub path: Option<PathEntry>,
+    /// 8 or 16: bits of each stored time.
+    pub bits: u32,
+    /// Pages of the atlas.
+    pub atlases: Vec<AtlasEntry>,
+    /// What lies where in which page: one entry per drawn primitive of each node of `scene.glb`.
+    pub instances: Vec<InstanceEntry>,
+    /// What was baked and why, what was left out and why.
+    pub effects: Vec<EffectEntry>,
+    /// What it took.
+    pub stats: Stats,
+    /// What storing lost.
+    pub error: ErrorEntry,
+}
+
+/// The file that was baked.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SourceEntry {
+    /// File name without its folder.
+    pub file: String,
+    /// SHA-256 of the file and of what it refers to.
+    pub sha256: String,
+}
+
+/// `scene.glb`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneEntry {
+    /// File name.
+    pub file: String,
+    /// World position of the centre that the bake was computed relative to.
+    pub centre_m: [f64; 3],
+    /// Texels a metre that the atlas reached.
+    pub texels_per_metre: f64,
+}
+
+/// The sun's path.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PathEntry {
+    /// Where, if the path is that of a real day.
+    pub place: Option<Place>,
+    /// The local date at the path's start, `YYYY-MM-DD`, if it is a real day.
+    pub date: Option<String>,
+    /// Hours local clocks are ahead of UTC.
+    pub utc_offset_h: Option<f64>,
+    /// Degrees the scene's north is turned from -Z towards +X.
+    pub north_deg: Option<f64>,
+    /// Start and end by local clocks, `YYYY-MM-DDTHH:MM:SS`.
+    pub local: Option<[String; 2]>,
+    /// Start and end in UTC, `YYYY-MM-DDTHH:MM:SSZ`.
+    pub utc: Option<[String; 2]>,
+    /// Minutes after local midnight of `date` at t = 0.
+    pub start_min: Option<f64>,
+    /// Minutes from t = 0 to t = 1.
+    pub duration_min: f64,
+    /// Angular radius of the sun's disc.
+    pub angular_radius_deg: f64,
+    /// Largest angle between the path and the ephemeris while the sun is up.
+    pub ephemeris_error_deg: Option<f64>,
+    /// The arcs, in order, from t = 0 to t = 1.
+    pub arcs: Vec<ArcEntry>,
+}
+
+/// A place on Earth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Place {
+    /// Degrees north.
+    pub latitude_deg: f64,
+    /// Degrees east.
+    pub longitude_deg: f64,
+}
+
+/// `dir(h) = cos d (cos h zero + sin h axis x zero) + sin d axis`, h linear in t.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ArcEntry {
+    /// Unit vector.
+    pub axis: [f64; 3],
+    /// Unit vector across the axis.
+    pub zero: [f64; 3],
+    /// d.
+    pub declination_deg: f64,
+    /// h at the start and at the end.
+    pub hour_angle_deg: [f64; 2],
+    /// t at the start and at the end.
+    pub t: [f64; 2],
+}
+
+/// A page of the atlas.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AtlasEntry {
+    /// In texels.
+    pub width: u32,
+    /// In texels.
+    pub height: u32,
+    /// Paths across the sun's disc; one where the sun is a line along its path.
+    pub lanes: Vec<LaneEntry>,
+    /// Ambient occlusion, 0 is occluded.
+    pub ao: Option<String>,
+    /// Bent normals.
+    pub bent: Option<String>,
+}
+
+/// A lane across the sun's disc.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LaneEntry {
+    /// Declination less the centre's.
+    pub offset_deg: f64,
+    /// Share of the disc's area.
+    pub weight: f64,
+    /// Texture pairs; channel c of layer l holds interval 4 l + c.
+    pub layers: Vec<LayerEntry>,
+}
+
+/// A pair of RGBA textures.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LayerEntry {
+    /// Interval starts.
+    pub rise: String,
+    /// Interval ends.
+    pub fall: String,
+}
+
+/// Where the texels of a drawn primitive lie: `page_uv = uv * uv_scale + uv_offset`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct InstanceEntry {
+    /// Index of the node in `scene.glb`.
+    pub node: usize,
+    /// Index of the primitive within the node's mesh.
+    pub primitive: usize,
+    /// Index in `atlases`; null for surfaces that are not baked (wholly transparent ones).
+    pub atlas: Option<u32>,
+    /// Which `TEXCOORD_n` of `scene.glb` holds `uv`.
+    pub uv_set: u32,
+    /// In page coordinates, v from the top.
+    pub uv_scale: [f32; 2],
+    /// In page coordinates, v from the top.
+    pub uv_offset: [f32; 2],
+    /// Whether the times hold for both sides. If so, a face is lit only while the sun stands before it.
+    pub double_sided: bool,
+}
+
+/// One effect: on or off, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EffectEntry {
+    /// Its name.
+    pub effect: String,
+    /// Whether it was baked.
+    pub on: bool,
+    /// The reason, and what would turn it over.
+    pub why: String,
+}
+
+/// What the bake took.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stats {
+    /// Triangles of all instances.
+    pub triangles: u64,
+    /// Triangles of the file that were left out: repeated index, no area, not finite.
+    pub dropped_triangles: u64,
+    /// Texels that stand for a point of a surface.
+    pub texels: u64,
+    /// Texels of all pages.
+    pub page_texels: u64,
+    /// Charts of the atlas.
+    pub charts: u64,
+    /// Lit intervals found.
+    pub intervals: u64,
+    /// Most lit intervals of any texel.
+    pub most_intervals: u64,
+    /// Engine and its parameters, as given on the command line.
+    pub engine: String,
+    /// Rays traced.
+    pub rays: u64,
+    /// Bytes of all files of the set but the manifest.
+    pub bytes: u64,
+    /// Threads used.
+    pub threads: usize,
+    /// Wall-clock seconds of each stage.
+    pub seconds: StageSeconds,
+}
+
+/// Wall-clock seconds of each stage.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageSeconds {
+    /// Reading the scene.
+    pub load: f64,
+    /// Unwrapping, packing and sampling.
+    pub unwrap: f64,
+    /// Building the hierarchy that rays are traced against.
+    pub bvh: f64,
+    /// Finding lit intervals.
+    pub visibility: f64,
+    /// Ambient occlusion.
+    pub ambient: f64,
+    /// Turning intervals into codes.
+    pub encode: f64,
+    /// Writing files.
+    pub write: f64,
+}
+
+/// What storing lost, over covered texels, in minutes of the path.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ErrorEntry {
+    /// By rounding times to codes.
+    pub quantisation_min: LossEntry,
+    /// By having fewer slots than intervals.
+    pub merge_min: LossEntry,
+    /// Texels that lost intervals for want of slots.
+    pub merged_texels: u64,
+}
+
+/// Distribution of a loss.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct LossEntry {
+    /// Over all covered texels.
+    pub mean: f64,
+    /// 99 in 100 texels lose no more.
+    pub p99: f64,
+    /// The worst texel.
+    pub worst: f64,
+    /// Where that is: atlas page, x, y. Null where nothing was lost.
+    pub worst_at: Option<[u32; 3]>,
+}

@@ -1,0 +1,219 @@
+//! Reads a baked set. The only reader: what it accepts is checked here once, and trusted afterwards.
+
+use super::manifest::{ArcEntry, AtlasEntry, FORMAT, InstanceEntry, Manifest, PathEntry, VERSION};
+use crate::maps::{Bits, Lane, LaneMaps, LayerMaps, PageMaps};
+use crate::sun::{Day, PathError, SunArc, SunPath};
+use glam::DVec3;
+use std::path::{Component, Path, PathBuf};
+
+/// Name of the manifest in a set's folder.
+pub const MANIFEST_FILE: &str = "sunbake.json";
+/// Widest page that is read.
+const MAX_PAGE_TEXELS: u32 = 32_768;
+
+/// A baked set, read and checked: files exist, sizes agree, indices are in range. The scene itself is read with
+/// [`crate::scene::load`] from [`BakedSet::scene_file`].
+#[derive(Debug, Clone)]
+pub struct BakedSet {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The manifest as read.
+    pub manifest: Manifest,
+    /// The sun's path, if the set has a sun.
+    pub path: Option<SunPath>,
+    /// Depth of stored times.
+    pub bits: Bits,
+    /// One per atlas page.
+    pub pages: Vec<PageMaps>,
+}
+
+impl BakedSet {
+    /// Path of `scene.glb`.
+    pub fn scene_file(&self) -> PathBuf {
+        self.folder.join(&self.manifest.scene.file)
+    }
+}
+
+/// Why a folder is not a baked set.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// A file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// There is no manifest in the folder.
+    #[error("{} holds no {MANIFEST_FILE}, so it is not a baked set: make one with `sunbake bake SCENE -o {}`", folder.display(), folder.display())]
+    NotASet {
+        /// The folder that was named.
+        folder: PathBuf,
+    },
+    /// The manifest is not JSON of the right shape.
+    #[error("{}: {reason}; bake the scene again", path.display())]
+    Manifest {
+        /// The manifest.
+        path: PathBuf,
+        /// What is wrong, and where.
+        reason: String,
+    },
+    /// A texture is not what the manifest says.
+    #[error("{}: {reason}; bake the scene again", path.display())]
+    Texture {
+        /// The texture.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Reads the set in `folder`.
+pub fn read(folder: &Path) -> Result<BakedSet, ReadError> {
+    let manifest = read_manifest(folder)?;
+    let wrong = |reason: String| ReadError::Manifest { path: folder.join(MANIFEST_FILE), reason };
+    let bits =
+        Bits::from_count(manifest.bits).ok_or_else(|| wrong(format!("bits is {}, not 8 or 16", manifest.bits)))?;
+    let path = manifest.path.as_ref().map(sun_path).transpose().map_err(|e| wrong(e.to_string()))?;
+    check_instances(&manifest).map_err(&wrong)?;
+    let pages = manifest.atlases.iter().map(|atlas| read_page(folder, atlas, bits)).collect::<Result<_, _>>()?;
+    Ok(BakedSet { folder: folder.to_owned(), manifest, path, bits, pages })
+}
+
+/// Reads and checks `sunbake.json` alone: enough for `sunbake inspect`.
+pub fn read_manifest(folder: &Path) -> Result<Manifest, ReadError> {
+    let path = folder.join(MANIFEST_FILE);
+    let text = std::fs::read_to_string(&path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::NotFound => ReadError::NotASet { folder: folder.to_owned() },
+        _ => ReadError::Io { path: path.clone(), source },
+    })?;
+    let wrong = |reason: String| ReadError::Manifest { path: path.clone(), reason };
+    let header: serde_json::Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+    if header["format"] != FORMAT {
+        return Err(wrong(format!("format is {}, not \"{FORMAT}\"", header["format"])));
+    }
+    if header["version"] != VERSION {
+        return Err(wrong(format!("version is {}; this program reads version {VERSION}", header["version"])));
+    }
+    let manifest: Manifest = serde_json::from_value(header).map_err(|e| wrong(e.to_string()))?;
+    check_names(&manifest).map_err(wrong)?;
+    Ok(manifest)
+}
+
+/// Every file a manifest names must lie in its own folder.
+fn check_names(manifest: &Manifest) -> Result<(), String> {
+    let mut names = vec![&manifest.scene.file];
+    for atlas in &manifest.atlases {
+        names.extend(atlas.ao.iter().chain(&atlas.bent));
+        names.extend(atlas.lanes.iter().flat_map(|lane| &lane.layers).flat_map(|layer| [&layer.rise, &layer.fall]));
+    }
+    match names.into_iter().find(|name| !is_plain_file_name(name)) {
+        Some(name) => Err(format!("it names {name:?}, which is not a plain file name in its own folder")),
+        None => Ok(()),
+    }
+}
+
+fn is_plain_file_name(name: &str) -> bool {
+    let mut components = Path::new(name).components();
+    matches!((components.next(), components.next()), (Some(Component::Normal(_)), None))
+        && !name.contains(['/', '\\', ':'])
+}
+
+fn check_instances(manifest: &Manifest) -> Result<(), String> {
+    let wrong = |i: &&InstanceEntry| {
+        let finite = i.uv_scale.iter().chain(&i.uv_offset).all(|x| x.is_finite());
+        !finite || i.atlas.is_some_and(|a| a as usize >= manifest.atlases.len())
+    };
+    match manifest.instances.iter().find(wrong) {
+        Some(i) => Err(format!("the instance of node {}, primitive {} points outside the atlas", i.node, i.primitive)),
+        None => Ok(()),
+    }
+}
+
+fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, ReadError> {
+    let size = (atlas.width, atlas.height);
+    if [size.0, size.1].iter().any(|edge| !(1..=MAX_PAGE_TEXELS).contains(edge)) {
+        let reason = format!("a page of {} x {} texels is out of range", size.0, size.1);
+        return Err(ReadError::Manifest { path: folder.join(MANIFEST_FILE), reason });
+    }
+    let mut lanes = Vec::with_capacity(atlas.lanes.len());
+    for lane in &atlas.lanes {
+        let mut layers = Vec::with_capacity(lane.layers.len());
+        for layer in &lane.layers {
+            let rise = read_codes(&folder.join(&layer.rise), size, bits)?;
+            let fall = read_codes(&folder.join(&layer.fall), size, bits)?;
+            layers.push(LayerMaps { rise, fall });
+        }
+        lanes.push(LaneMaps { lane: Lane { offset_rad: lane.offset_deg.to_radians(), weight: lane.weight }, layers });
+    }
+    let ao = atlas.ao.as_ref().map(|name| read_grey(&folder.join(name), size)).transpose()?;
+    Ok(PageMaps { width: size.0, height: size.1, lanes, ao })
+}
+
+/// Decodes a texture, refusing one of another size before its texels are allocated.
+fn decode(path: &Path, (width, height): (u32, u32)) -> Result<image::DynamicImage, ReadError> {
+    let wrong = |reason: String| ReadError::Texture { path: path.to_owned(), reason };
+    let io = |source| ReadError::Io { path: path.to_owned(), source };
+    let mut reader = image::ImageReader::open(path).map_err(io)?;
+    reader.set_format(image::ImageFormat::Png);
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(width);
+    limits.max_image_height = Some(height);
+    limits.max_alloc = None;
+    reader.limits(limits);
+    let image = reader.decode().map_err(|e| wrong(e.to_string()))?;
+    if (image.width(), image.height()) != (width, height) {
+        let found = format!("{} x {}", image.width(), image.height());
+        return Err(wrong(format!("it is {found} texels; the manifest says {width} x {height}")));
+    }
+    Ok(image)
+}
+
+fn read_codes(path: &Path, size: (u32, u32), bits: Bits) -> Result<Vec<[u16; 4]>, ReadError> {
+    match (decode(path, size)?, bits) {
+        (image::DynamicImage::ImageRgba8(image), Bits::Eight) => {
+            Ok(image.pixels().map(|p| p.0.map(u16::from)).collect())
+        }
+        (image::DynamicImage::ImageRgba16(image), Bits::Sixteen) => Ok(image.pixels().map(|p| p.0).collect()),
+        (image, _) => {
+            let reason = format!("its texels are {:?}; the manifest says RGBA of {} bits", image.color(), bits.count());
+            Err(ReadError::Texture { path: path.to_owned(), reason })
+        }
+    }
+}
+
+fn read_grey(path: &Path, size: (u32, u32)) -> Result<Vec<u16>, ReadError> {
+    Ok(decode(path, size)?.into_luma16().into_raw())
+}
+
+/// The path that a manifest describes.
+fn sun_path(entry: &PathEntry) -> Result<SunPath, PathError> {
+    let arcs = entry.arcs.iter().map(arc).collect();
+    let mut path = SunPath::new(arcs, entry.angular_radius_deg.to_radians(), entry.duration_min)?;
+    path.day = day(entry);
+    Ok(path)
+}
+
+fn arc(entry: &ArcEntry) -> SunArc {
+    SunArc {
+        axis: DVec3::from_array(entry.axis),
+        zero: DVec3::from_array(entry.zero),
+        declination_rad: entry.declination_deg.to_radians(),
+        hour_angle_rad: entry.hour_angle_deg.map(f64::to_radians),
+        t: entry.t,
+    }
+}
+
+fn day(entry: &PathEntry) -> Option<Day> {
+    let place = entry.place?;
+    Some(Day {
+        latitude_deg: place.latitude_deg,
+        longitude_deg: place.longitude_deg,
+        date: entry.date.clone()?,
+        utc_offset_h: entry.utc_offset_h?,
+        north_deg: entry.north_deg?,
+        start_min: entry.start_min?,
+        ephemeris_error_deg: entry.ephemeris_error_deg?,
+    })
+}

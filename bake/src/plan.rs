@@ -1,0 +1,97 @@
+//! The effect plan: which effects this scene and request call for, decided before anything runs.
+//!
+//! Each effect is on or off for a reason, the reason names what would turn it over, and what is off costs nothing: no
+//! ray, no texture, no loop.
+
+use crate::disk::manifest::EffectEntry;
+use crate::scene::{Alpha, Scene};
+use crate::sun::SunPath;
+
+/// An effect that a bake may hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// Times at which texels see the sun.
+    SunIntervals,
+    /// A sun of some width: edges soften as it crosses them.
+    Penumbra,
+    /// Several paths across the sun's disc.
+    DiscLanes,
+    /// Rays look up alpha.
+    AlphaCut,
+    /// Surfaces that are lit from both sides.
+    DoubleSided,
+    /// Share of the sky that texels see.
+    AmbientOcclusion,
+}
+
+impl Effect {
+    /// Its name in the manifest.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SunIntervals => "sun-intervals",
+            Self::Penumbra => "penumbra",
+            Self::DiscLanes => "disc-lanes",
+            Self::AlphaCut => "alpha-cut",
+            Self::DoubleSided => "double-sided",
+            Self::AmbientOcclusion => "ambient-occlusion",
+        }
+    }
+}
+
+/// One effect's verdict.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Decision {
+    /// Which effect.
+    pub effect: Effect,
+    /// Whether it is part of the bake.
+    pub is_on: bool,
+    /// Why.
+    pub why: String,
+}
+
+/// All verdicts, in the order of [`Effect`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct EffectPlan {
+    /// One per effect.
+    pub decisions: Vec<Decision>,
+}
+
+impl EffectPlan {
+    /// Decides from the scene and the path; `no_sun` says why there is none.
+    pub fn new(scene: &Scene, path: Option<&SunPath>, no_sun: &str) -> Self {
+        let decide = |effect, is_on, why: String| Decision { effect, is_on, why };
+        let radius_deg = path.map_or(0.0, |p| p.angular_radius_rad.to_degrees());
+        let cut = count(scene, |m| matches!(m.alpha, Alpha::Cut { .. }));
+        let double_sided = count(scene, |m| m.is_double_sided && m.alpha != Alpha::Air);
+        let sun = path.map_or(no_sun.to_owned(), |p| format!("the sun is up, along {} arc(s)", p.arcs().len()));
+        Self {
+            decisions: vec![
+                decide(Effect::SunIntervals, path.is_some(), sun),
+                decide(Effect::Penumbra, radius_deg > 0.0, format!("the light's radius is {radius_deg:.3} degrees")),
+                decide(Effect::DiscLanes, false, "the sun is taken as a line along its path".into()),
+                decide(Effect::AlphaCut, cut > 0, format!("{cut} drawn surfaces have holes cut by alpha")),
+                decide(
+                    Effect::DoubleSided,
+                    double_sided > 0,
+                    format!("{double_sided} drawn surfaces are double-sided"),
+                ),
+                decide(Effect::AmbientOcclusion, false, "this version does not bake it".into()),
+            ],
+        }
+    }
+
+    /// Whether an effect is part of the bake.
+    pub fn is_on(&self, effect: Effect) -> bool {
+        self.decisions.iter().any(|d| d.effect == effect && d.is_on)
+    }
+
+    /// For the manifest.
+    pub fn entries(&self) -> Vec<EffectEntry> {
+        let entry = |d: &Decision| EffectEntry { effect: d.effect.name().into(), on: d.is_on, why: d.why.clone() };
+        self.decisions.iter().map(entry).collect()
+    }
+}
+
+fn count(scene: &Scene, is: impl Fn(&crate::scene::Material) -> bool) -> usize {
+    (0..scene.instances.len()).filter(|&i| is(scene.material(i))).count()
+}

@@ -1,0 +1,49 @@
+//! How a bake tells how far it is.
+
+/// A stage of a bake, in the order they run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Reading the scene. Counts nothing.
+    Load,
+    /// Unwrapping and packing. Counts thousandths.
+    Unwrap,
+    /// Building the hierarchy. Counts nothing.
+    Bvh,
+    /// Finding lit intervals. Counts texels.
+    Visibility,
+    /// Turning them into codes. Counts texels.
+    Encode,
+    /// Writing files. Counts nothing.
+    Write,
+}
+
+impl Stage {
+    /// What to call it while it runs.
+    pub fn verb(self) -> &'static str {
+        match self {
+            Self::Load => "reading the scene",
+            Self::Unwrap => "unwrapping",
+            Self::Bvh => "building the hierarchy",
+            Self::Visibility => "tracing the sun",
+            Self::Encode => "encoding",
+            Self::Write => "writing",
+        }
+    }
+}
+
+/// Listens to a bake. Calls come from any thread.
+pub trait Progress: Sync {
+    /// A stage starts; `total` is how much it will count, 0 if it does not count.
+    fn start(&self, stage: Stage, total: u64);
+    /// The current stage got on by so much.
+    fn advance(&self, by: u64);
+}
+
+/// Listens to nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn start(&self, _stage: Stage, _total: u64) {}
+    fn advance(&self, _by: u64) {}
+}

@@ -1,0 +1,95 @@
+//! What a bake is asked for. Presets fill every field; a flag overrides one.
+
+use crate::atlas::Density;
+use crate::maps::Bits;
+use crate::sun::DayRequest;
+
+/// Everything that decides what a bake makes, and what it may cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakeSettings {
+    /// Which sun.
+    pub sun: SunRequest,
+    /// How many texels. Time and bytes grow with their number, so with the square of the density.
+    pub density: Density,
+    /// Edge of a square page, 64 to 16384. Larger pages pack better; some hardware stops at 8192.
+    pub page_size_texels: u32,
+    /// Empty texels kept around every chart, 1 to 16. A four-texel filter needs 1; each mip level below needs twice as
+    /// many as the one above.
+    pub padding_texels: u32,
+    /// Bits of a stored time. 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the bytes.
+    pub bits: Bits,
+    /// Most layers of four intervals, 1 to 16. A texel with more intervals keeps the list that is wrong for the
+    /// shortest time. Layers that no texel needs are not written.
+    pub layer_cap: usize,
+    /// How lit intervals are found.
+    pub engine: EngineChoice,
+    /// Threads, 0 for one per core. The result does not depend on it.
+    pub threads: usize,
+    /// Memory that the bake may plan for; more is refused before it is taken.
+    pub max_memory_bytes: u64,
+}
+
+/// Which sun to bake.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SunRequest {
+    /// A day at a place.
+    Day(DayRequest),
+    /// Keyed directions: the text of a path file.
+    Keyed {
+        /// JSON; see [`crate::sun::parse_keyed`].
+        json: String,
+        /// Degrees that the scene's north is turned from -Z towards +X.
+        north_deg: f64,
+    },
+    /// The scene's own directional light; if it has none, this day.
+    SceneOr(DayRequest),
+}
+
+/// How lit intervals are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EngineChoice {
+    /// This many evenly spaced suns, 2 to 65536: edges are off by half a step at most, and what is thinner than a step
+    /// may be missed. Time grows with the number.
+    Rays(usize),
+}
+
+impl BakeSettings {
+    /// A look in seconds: one page of 512, 64 suns, 8 bits.
+    pub fn draft(sun: SunRequest) -> Self {
+        Self {
+            density: Density::Pages(1),
+            page_size_texels: 512,
+            bits: Bits::Eight,
+            layer_cap: 2,
+            engine: EngineChoice::Rays(64),
+            max_memory_bytes: 4 << 30,
+            ..Self::standard(sun)
+        }
+    }
+
+    /// Good for a game level: one page of 2048, 256 suns, 16 bits.
+    pub fn standard(sun: SunRequest) -> Self {
+        Self {
+            sun,
+            density: Density::Pages(1),
+            page_size_texels: 2048,
+            padding_texels: 2,
+            bits: Bits::Sixteen,
+            layer_cap: 4,
+            engine: EngineChoice::Rays(256),
+            threads: 0,
+            max_memory_bytes: 8 << 30,
+        }
+    }
+
+    /// To keep: one page of 4096, 1024 suns, 16 bits, as many layers as anything needs.
+    pub fn last(sun: SunRequest) -> Self {
+        Self {
+            page_size_texels: 4096,
+            layer_cap: 8,
+            engine: EngineChoice::Rays(1024),
+            max_memory_bytes: 16 << 30,
+            ..Self::standard(sun)
+        }
+    }
+}

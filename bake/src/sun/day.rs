@@ -1,0 +1,216 @@
+//! A real day at a real place as a sun path.
+//!
+//! Theory: which daylight is a date's? The one around the sun's upper transit nearest to local noon: it may set after
+//! local midnight (high latitudes, clocks far from the sun's own), and belongs to the date all the same. Near the poles
+//! the sun may stay up around that transit for a whole turn (polar day: the path is then the date's 24 hours from local
+//! midnight), may not be up at all (polar night), or may cross the horizon just once (where a polar day begins or ends):
+//! daylight is cut twelve hours before and after the transit. At a pole the sun may be down at the transit and up later
+//! that day; then the longest daylight within those 24 hours is the date's.
+//!
+//! Practice: t runs linearly with clock time, and with it, to well under the fit's error, with the hour angle. Sunrise
+//! and sunset are the moments when the *centre* of the sun's disc is on the *geometric* horizon. There is no refraction:
+//! in air the sun appears some 0.6 degrees higher there, so almanacs, which also wait for the disc's upper edge, print a
+//! day that is 7 minutes longer at mid latitudes.
+
+use super::SUN_ANGULAR_RADIUS_DEG;
+use super::clock::{DAY_MIN, Date, clock_text};
+use super::compass::Compass;
+use super::ephemeris::{Ephemeris, EphemerisError};
+use super::fit::{Sample, fit};
+use super::path::{Day, PathError, SunPath};
+
+/// One arc more is taken only where the path would stray from the ephemeris by more than this, in degrees. Each arc
+/// costs a query of the scene for every texel, and 0.01 degrees are 2.4 seconds of sun.
+pub const FIT_ENOUGH_DEG: f64 = 0.01;
+
+/// Shortest path, in minutes: a second, so that ascending times stay apart whatever is computed from them. Shorter
+/// daylight is polar night.
+const SHORTEST_MIN: f64 = 1.0 / 60.0;
+
+/// Which day, where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DayRequest {
+    /// Degrees north, in -90..=90.
+    pub latitude_deg: f64,
+    /// Degrees east, in -180..=180.
+    pub longitude_deg: f64,
+    /// The local date.
+    pub date: Date,
+    /// Hours that local clocks are ahead of UTC, in -12..=14, fractions allowed (Nepal: 5.75). `None`: the whole hour
+    /// nearest to the sun's own time, `longitude / 15`. There is no summer time unless it is given here.
+    pub utc_offset_h: Option<f64>,
+    /// Degrees that the scene's north is turned from -Z towards +X (clockwise seen from above).
+    pub north_deg: f64,
+    /// Start and end of the path in minutes of local clock time, each in 0..=1440; an end at or before the start lies on
+    /// the next day. `None`: from sunrise to sunset.
+    pub window: Option<[f64; 2]>,
+}
+
+/// What a day gives.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(clippy::large_enum_variant)]
+pub enum DayOutcome {
+    /// The sun's path.
+    Path(SunPath),
+    /// The sun does not rise (polar night). No failure: there are no intervals to bake, but ambient occlusion bakes.
+    NoSun {
+        /// Highest elevation of the sun's centre within twelve hours of its transit, in degrees; not positive, but for
+        /// rounding.
+        highest_elevation_deg: f64,
+        /// When that is, in minutes after local midnight.
+        highest_min: f64,
+    },
+}
+
+/// Why a request gives no day.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DayError {
+    /// Not a latitude.
+    #[error("latitude {0} is off the globe: give degrees north in -90..=90")]
+    Latitude(f64),
+    /// Not a longitude.
+    #[error("longitude {0} is off the globe: give degrees east in -180..=180")]
+    Longitude(f64),
+    /// Not a time zone.
+    #[error("a UTC offset of {0} hours does not exist: give hours ahead of UTC in -12..=14, for instance 5.75")]
+    UtcOffset(f64),
+    /// Not an angle.
+    #[error("north turned by {0} degrees is no direction: give a finite angle")]
+    North(f64),
+    /// Not clock times.
+    #[error(
+        "no window runs from minute {0} to minute {1}: give minutes of local time in 0..=1440; it lasts a second at least"
+    )]
+    Window(f64, f64),
+    /// The sun is down all through the window.
+    #[error(
+        "the sun stays below the horizon from {window} on {date}: it is up {sun_up} there; choose a window that meets that"
+    )]
+    DarkWindow {
+        /// `HH:MM to HH:MM`.
+        window: String,
+        /// The date.
+        date: Date,
+        /// `from HH:MM to HH:MM`.
+        sun_up: String,
+    },
+    /// The ephemeris failed.
+    #[error(transparent)]
+    Ephemeris(#[from] EphemerisError),
+    /// The fit gave no path.
+    #[error("the sun's positions on that day make no path: {0}")]
+    Path(#[from] PathError),
+}
+
+/// The sun's path over a day at a place.
+pub fn day(request: &DayRequest) -> Result<DayOutcome, DayError> {
+    let utc_offset_h = check(request)?;
+    let place = [request.latitude_deg, request.longitude_deg];
+    let ephemeris = Ephemeris::new(place, request.date, utc_offset_h, Compass::new(request.north_deg))?;
+    let Some(daylight) = daylight_of_date(&ephemeris)? else {
+        return no_sun_unless_in_window(request, utc_offset_h, &ephemeris);
+    };
+    let Some(window) = request.window.map(unrolled) else {
+        return Ok(DayOutcome::Path(path_over(request, utc_offset_h, &ephemeris, daylight)?));
+    };
+    if ephemeris.daylight(window)?.is_empty() {
+        return Err(DayError::DarkWindow {
+            window: window.map(clock_text).join(" to "),
+            date: request.date,
+            sun_up: format!("from {}", daylight.map(clock_text).join(" to ")),
+        });
+    }
+    Ok(DayOutcome::Path(path_over(request, utc_offset_h, &ephemeris, window)?))
+}
+
+/// On a date without daylight of its own, a window across midnight may still hold the next day's sun.
+fn no_sun_unless_in_window(
+    request: &DayRequest,
+    utc_offset_h: f64,
+    ephemeris: &Ephemeris,
+) -> Result<DayOutcome, DayError> {
+    if let Some(window) = request.window.map(unrolled)
+        && !ephemeris.daylight(window)?.is_empty()
+    {
+        return Ok(DayOutcome::Path(path_over(request, utc_offset_h, ephemeris, window)?));
+    }
+    let transit = ephemeris.transit_min()?;
+    let [highest_min, highest_elevation_deg] = ephemeris.highest([transit - 0.5 * DAY_MIN, transit + 0.5 * DAY_MIN])?;
+    Ok(DayOutcome::NoSun { highest_elevation_deg, highest_min })
+}
+
+/// Checks every number of a request; gives the UTC offset.
+fn check(request: &DayRequest) -> Result<f64, DayError> {
+    if !(-90.0..=90.0).contains(&request.latitude_deg) {
+        return Err(DayError::Latitude(request.latitude_deg));
+    }
+    if !(-180.0..=180.0).contains(&request.longitude_deg) {
+        return Err(DayError::Longitude(request.longitude_deg));
+    }
+    if !request.north_deg.is_finite() {
+        return Err(DayError::North(request.north_deg));
+    }
+    if let Some(window @ [start, end]) = request.window {
+        let within_day = window.iter().all(|minute| (0.0..=DAY_MIN).contains(minute));
+        if !within_day || length(&unrolled(window)) < SHORTEST_MIN {
+            return Err(DayError::Window(start, end));
+        }
+    }
+    let utc_offset_h = request.utc_offset_h.unwrap_or_else(|| (request.longitude_deg / 15.0).round());
+    if !(-12.0..=14.0).contains(&utc_offset_h) {
+        return Err(DayError::UtcOffset(utc_offset_h));
+    }
+    Ok(utc_offset_h)
+}
+
+/// A window whose end follows its start.
+fn unrolled([start, end]: [f64; 2]) -> [f64; 2] {
+    [start, if end <= start { end + DAY_MIN } else { end }]
+}
+
+fn length([start, end]: &[f64; 2]) -> f64 {
+    end - start
+}
+
+/// Sunrise and sunset of the date in minutes after local midnight, by the rules on top of this file.
+fn daylight_of_date(ephemeris: &Ephemeris) -> Result<Option<[f64; 2]>, EphemerisError> {
+    let transit = ephemeris.transit_min()?;
+    let around = [transit - 0.5 * DAY_MIN, transit + 0.5 * DAY_MIN];
+    let mut daylight = ephemeris.daylight(around)?;
+    if daylight == [around] {
+        return Ok(Some([0.0, DAY_MIN]));
+    }
+    daylight.retain(|span| length(span) >= SHORTEST_MIN);
+    let at_transit = daylight.iter().find(|[rise, set]| (*rise..=*set).contains(&transit));
+    let longest = daylight.iter().max_by(|a, b| length(a).total_cmp(&length(b)));
+    Ok(at_transit.or(longest).copied())
+}
+
+/// The path from one minute to another.
+fn path_over(
+    request: &DayRequest,
+    utc_offset_h: f64,
+    ephemeris: &Ephemeris,
+    [start, end]: [f64; 2],
+) -> Result<SunPath, DayError> {
+    let duration_min = end - start;
+    // At most a minute apart, and joints at halves and thirds fall on a sample.
+    let steps = 6 * ((duration_min / 6.0).ceil() as u32).max(4);
+    let sample = |i: u32| -> Result<Sample, EphemerisError> {
+        let t = f64::from(i) / f64::from(steps);
+        Ok(Sample { t, direction: ephemeris.direction(start + t * duration_min)? })
+    };
+    let samples = (0..=steps).map(sample).collect::<Result<Vec<Sample>, _>>()?;
+    let fitted = fit(&samples, ephemeris.axis_and_zero(), FIT_ENOUGH_DEG);
+    let mut path = SunPath::new(fitted.arcs, SUN_ANGULAR_RADIUS_DEG.to_radians(), duration_min)?;
+    path.day = Some(Day {
+        latitude_deg: request.latitude_deg,
+        longitude_deg: request.longitude_deg,
+        date: request.date.to_string(),
+        utc_offset_h,
+        north_deg: request.north_deg,
+        start_min: start,
+        ephemeris_error_deg: fitted.error_deg,
+    });
+    Ok(path)
+}

@@ -1,0 +1,194 @@
+//! A sun path from a file of keys: directions at times, joined by great circles.
+//!
+//! ```json
+//! { "angular_radius_deg": 0.27, "duration_min": 600,
+//!   "keys": [ { "t": 0, "azimuth_deg": 90, "elevation_deg": 5 },
+//!             { "t": 0.4, "direction": [0, 1, 0.3] },
+//!             { "t": 1, "azimuth_deg": 270, "elevation_deg": 5 } ] }
+//! ```
+//!
+//! Directions point from the scene to the light: `direction` in world space, any length, or an azimuth from north,
+//! clockwise towards east, with an elevation. Between two keys the light moves at constant speed along the shorter great
+//! circle, an arc of declination zero, so every engine that can bake a day can bake this. `t` runs from 0 to 1; if no
+//! key has one, keys are evenly spaced. Without `duration_min` the path lasts as long as the real sun would take for it.
+
+use glam::DVec3;
+use serde::Deserialize;
+
+use super::{Compass, PathError, SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath, duration_min_of_angle};
+
+/// Most keys that a path may have: each pair costs a query of the scene for every texel.
+pub const MAX_KEYS: usize = 1000;
+
+/// Smallest angle between neighbouring keys, and between a key and the opposite of its neighbour, in degrees.
+const MIN_ANGLE_DEG: f64 = 0.001;
+
+/// Shortest time between neighbouring keys.
+const MIN_STEP_T: f64 = 1e-6;
+
+/// Why a file of keys makes no path.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum KeyedError {
+    /// Not JSON, or not of this form.
+    #[error("the path file is not understood: {0}")]
+    Json(String),
+    /// A lamp that moves.
+    #[error("the path file has '{0}': positions are not supported yet, only directions")]
+    Positions(&'static str),
+    /// Too few or too many keys.
+    #[error("the path has {0} keys: give 2 to {MAX_KEYS}")]
+    Count(usize),
+    /// A key is wrong in itself.
+    #[error("key {index} of the path (counted from 0) {problem}")]
+    Key {
+        /// Which key.
+        index: usize,
+        /// What is wrong, and what to give.
+        problem: String,
+    },
+    /// A key does not go with the one before it.
+    #[error("keys {index} and {next} of the path (counted from 0) {problem}", next = .index + 1)]
+    Pair {
+        /// The first of the two.
+        index: usize,
+        /// What is wrong, and what to give.
+        problem: String,
+    },
+    /// A size out of range.
+    #[error("{name} is {value}: give a number {bound}")]
+    Size {
+        /// The file's name for it.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+        /// What it must be.
+        bound: &'static str,
+    },
+    /// Nothing would ever be lit.
+    #[error("the path stays below the horizon (+Y is up), so nothing would be lit: directions must point to the light")]
+    BelowHorizon,
+    /// The arcs make no path.
+    #[error(transparent)]
+    Path(#[from] PathError),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    angular_radius_deg: Option<f64>,
+    duration_min: Option<f64>,
+    #[serde(default)]
+    keys: Vec<Key>,
+    positions: Option<serde::de::IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Key {
+    t: Option<f64>,
+    direction: Option<[f64; 3]>,
+    azimuth_deg: Option<f64>,
+    elevation_deg: Option<f64>,
+    position: Option<serde::de::IgnoredAny>,
+}
+
+/// Reads a path of keys. `north_deg` turns azimuths as it turns a day's ([`Compass::new`]); directions are left alone.
+pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
+    let file: File = serde_json::from_str(json).map_err(|error| KeyedError::Json(error.to_string()))?;
+    if file.positions.is_some() {
+        return Err(KeyedError::Positions("positions"));
+    }
+    if file.keys.iter().any(|key| key.position.is_some()) {
+        return Err(KeyedError::Positions("position"));
+    }
+    if !(2..=MAX_KEYS).contains(&file.keys.len()) {
+        return Err(KeyedError::Count(file.keys.len()));
+    }
+    let angular_radius_deg = file.angular_radius_deg.unwrap_or(SUN_ANGULAR_RADIUS_DEG);
+    if !(0.0..90.0).contains(&angular_radius_deg) {
+        let bound = "of at least 0 and under 90";
+        return Err(KeyedError::Size { name: "angular_radius_deg", value: angular_radius_deg, bound });
+    }
+    if let Some(value) = file.duration_min.filter(|minutes| !(*minutes > 0.0 && minutes.is_finite())) {
+        return Err(KeyedError::Size { name: "duration_min", value, bound: "above 0" });
+    }
+    if !north_deg.is_finite() {
+        return Err(KeyedError::Size { name: "north", value: north_deg, bound: "that is finite" });
+    }
+    let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &times(&file.keys)?)?;
+    let swept_rad: f64 = arcs.iter().map(|arc| arc.hour_angle_rad[1]).sum();
+    let duration_min = file.duration_min.unwrap_or(duration_min_of_angle(swept_rad));
+    let path = SunPath::new(arcs, angular_radius_deg.to_radians(), duration_min)?;
+    if path.above_horizon(DVec3::Y).as_slice().is_empty() {
+        return Err(KeyedError::BelowHorizon);
+    }
+    Ok(path)
+}
+
+/// Unit directions of the keys, world space.
+fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyedError> {
+    let one = |(index, key): (usize, &Key)| {
+        let wrong = |problem: &str| KeyedError::Key { index, problem: problem.to_owned() };
+        match (key.direction, key.azimuth_deg, key.elevation_deg) {
+            (Some(direction), None, None) => DVec3::from_array(direction)
+                .try_normalize()
+                .ok_or_else(|| wrong("has a direction without length: give one that points to the light")),
+            (None, Some(azimuth), Some(elevation)) if (-90.0..=90.0).contains(&elevation) && azimuth.is_finite() => {
+                Ok(compass.direction(azimuth, elevation))
+            }
+            (None, Some(_), Some(elevation)) => {
+                Err(wrong(&format!("has an elevation of {elevation} degrees: give -90..=90")))
+            }
+            _ => Err(wrong("needs either 'direction' or both 'azimuth_deg' and 'elevation_deg'")),
+        }
+    };
+    keys.iter().enumerate().map(one).collect()
+}
+
+/// Times of the keys, from 0 to 1.
+fn times(keys: &[Key]) -> Result<Vec<f64>, KeyedError> {
+    let last = keys.len() - 1;
+    if keys.iter().all(|key| key.t.is_none()) {
+        return Ok((0..=last).map(|i| i as f64 / last as f64).collect());
+    }
+    let wrong = |index, problem: String| Err(KeyedError::Key { index, problem });
+    let mut times = Vec::with_capacity(keys.len());
+    for (index, key) in keys.iter().enumerate() {
+        let Some(t) = key.t else {
+            return wrong(index, "has no 't': give every key one, or none".to_owned());
+        };
+        let expected = if index == 0 { Some(0.0) } else { (index == last).then_some(1.0) };
+        if expected.is_some_and(|expected| t != expected) {
+            return wrong(index, format!("has t = {t}: the first is at 0 and the last at 1"));
+        }
+        times.push(t);
+    }
+    for (index, pair) in times.windows(2).enumerate() {
+        if pair[1] - pair[0] < MIN_STEP_T {
+            let problem =
+                format!("are at t = {} and {}: times must ascend, by {MIN_STEP_T} at least", pair[0], pair[1]);
+            return Err(KeyedError::Pair { index, problem });
+        }
+    }
+    Ok(times)
+}
+
+/// Great circles from key to key.
+fn arcs(directions: &[DVec3], times: &[f64]) -> Result<Vec<SunArc>, KeyedError> {
+    let one = |(index, pair): (usize, &[DVec3])| {
+        let [zero, end] = [pair[0], pair[1]];
+        let across = zero.cross(end);
+        let angle = across.length().atan2(zero.dot(end));
+        let wrong = |problem: String| Err(KeyedError::Pair { index, problem });
+        if angle.to_degrees() < MIN_ANGLE_DEG {
+            return wrong("point the same way: a light that stands still has no path; drop one of them".to_owned());
+        }
+        if angle.to_degrees() > 180.0 - MIN_ANGLE_DEG {
+            return wrong("point opposite ways, and every great circle joins those: put a key between them".to_owned());
+        }
+        let axis = across.normalize().reject_from_normalized(zero).normalize();
+        let t = [times[index], times[index + 1]];
+        Ok(SunArc { axis, zero, declination_rad: 0.0, hour_angle_rad: [0.0, angle], t })
+    };
+    directions.windows(2).enumerate().map(one).collect()
+}

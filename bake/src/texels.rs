@@ -1,0 +1,119 @@
+//! Covered texels of a set with all that a second ray tracer needs to check them: where the point is, which plane it
+//! lies in, where rays start, and what is stored.
+
+use crate::atlas::{self, Atlas, Sample};
+use crate::disk::read::BakedSet;
+use crate::maps::stored_intervals;
+use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
+use crate::trace::Tracer;
+use glam::DVec3;
+use serde::Serialize;
+
+/// One covered texel.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Texel {
+    /// Index of the atlas page.
+    pub atlas: usize,
+    /// Column, from the left.
+    pub x: u32,
+    /// Row, from the top.
+    pub y: u32,
+    /// Index in the manifest's `instances`.
+    pub instance: usize,
+    /// Point on the surface, world space, metres.
+    pub position: [f64; 3],
+    /// Unit normal of the surface's plane, world space.
+    pub normal: [f64; 3],
+    /// Whether light from behind the plane counts as well.
+    pub double_sided: bool,
+    /// Where rays towards suns before the plane start, world space, metres.
+    pub origin: [f64; 3],
+    /// Where rays towards suns behind the plane start, if those count.
+    pub origin_back: Option<[f64; 3]>,
+    /// When the texel sees the sun, as stored, lane by lane.
+    pub lit: Vec<[f64; 2]>,
+    /// Ambient occlusion as stored, 0 is occluded, if the set has it.
+    pub ao: Option<f64>,
+}
+
+/// Draws `count` covered texels (all, if there are fewer), in page and row order. The same seed draws the same ones.
+pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
+    let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
+    let atlas = Atlas::of_set(&scene, &set.manifest);
+    let geometry = Geometry::new(&scene);
+    let tracer = Tracer::new(&scene, &geometry);
+    let covered: Vec<(usize, Sample)> = (0..set.pages.len())
+        .flat_map(|page| {
+            let samples = atlas::sample_page(&scene, &geometry, &atlas, page as u32).samples;
+            samples.into_iter().map(move |sample| (page, sample))
+        })
+        .collect();
+    let describe = |&(page, sample): &(usize, Sample)| describe(set, &scene, &geometry, &tracer, page, &sample);
+    Ok(pick(covered.len(), count, seed).iter().map(|&i| describe(&covered[i])).collect())
+}
+
+fn describe(
+    set: &BakedSet,
+    scene: &Scene,
+    geometry: &Geometry,
+    tracer: &Tracer,
+    page: usize,
+    sample: &Sample,
+) -> Texel {
+    let maps = &set.pages[page];
+    let point = atlas::surface_point(scene, geometry, sample);
+    let world = |p: DVec3| (p + scene.centre_m).to_array();
+    let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
+    let lit = |lane: &crate::maps::LaneMaps| stored_intervals(&lane.layers, sample.texel as usize, set.bits);
+    Texel {
+        atlas: page,
+        x: sample.texel % maps.width,
+        y: sample.texel / maps.width,
+        instance: geometry.surface(sample.triangle as usize).instance,
+        position: world(point.position_m),
+        normal: point.normal.to_array(),
+        double_sided: point.is_double_sided,
+        origin: origin(point.normal),
+        origin_back: point.is_double_sided.then(|| origin(-point.normal)),
+        lit: maps.lanes.first().map(lit).unwrap_or_default(),
+        ao: maps.ao.as_ref().map(|ao| f64::from(ao[sample.texel as usize]) / 65_535.0),
+    }
+}
+
+/// `count` different numbers below `total`, ascending: selection sampling (Knuth, *The Art of Computer Programming*,
+/// volume 2, algorithm 3.4.2 S).
+fn pick(total: usize, count: usize, seed: u64) -> Vec<usize> {
+    let mut state = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut picked = Vec::with_capacity(count.min(total));
+    for index in 0..total {
+        let wanted = (count - picked.len().min(count)) as f64;
+        if uniform(&mut state) * ((total - index) as f64) < wanted {
+            picked.push(index);
+        }
+    }
+    picked
+}
+
+/// The next number in [0, 1) of SplitMix64 (Steele, Lea and Flood, 2014).
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn picking_gives_as_many_different_ones_as_there_are() {
+        for (total, count) in [(0, 5), (3, 5), (5, 5), (1000, 10), (1000, 0)] {
+            let picked = pick(total, count, 42);
+            assert_eq!(picked.len(), count.min(total));
+            assert!(picked.windows(2).all(|w| w[0] < w[1]) && picked.iter().all(|&i| i < total));
+        }
+        assert_ne!(pick(1000, 10, 1), pick(1000, 10, 2));
+    }
+}

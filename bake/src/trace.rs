@@ -1,0 +1,448 @@
+//! Rays against the scene. The only file that names obvhs.
+//!
+//! The hierarchy is obvhs' eight-wide compressed BVH, walked in `f32`; triangles are tested in `f64` on their `f32`
+//! corners. Three departures from using obvhs as it comes:
+//!
+//! * **Watertight triangles.** Its own test leaves gaps at shared edges. Ours is "Watertight Ray/Triangle Intersection"
+//!   (Woop, Benthin and Wald, *Journal of Computer Graphics Techniques* 2(1), 2013): neighbours compute the same edge
+//!   function with opposite sign, and both ends of the sign count as a hit.
+//! * **Padded boxes.** Its slab test rounds both ways. Boxes are grown by [`BOX_PADDING`] of the scene's size, more than
+//!   the walk's rounding can amount to.
+//! * **Tracer space.** Its nodes clamp sizes to an absolute 1e-4. The scene is therefore scaled by a power of two, which
+//!   loses no bit, until its half size lies between 512 and 1024 units.
+
+use crate::scene::alpha::{blend, image_uvs, nearest_texel, vertex_alphas};
+use crate::scene::{Alpha, Geometry, Scene, Wrap};
+use glam::{DVec3, Vec2, Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
+use obvhs::ray::{Ray, RayHit};
+use obvhs::{Boundable, BvhBuildParams};
+
+/// Growth of every box, as a share of tracer space's half size.
+const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;
+/// How far shadow rays start above their surface, in steps of the `f32` in which its corners are held: enough that a
+/// flat wall of many triangles, each corner rounded by half a step, does not shade itself.
+const LIFT_STEPS: f64 = 4.0;
+/// One step of an `f32`, as a share of its value.
+const STEP: f64 = 1.0 / (1 << 23) as f64;
+
+/// A scene made ready for rays. Every position and distance in its methods is bake space, in metres.
+pub struct Tracer {
+    bvh: CwBvh,
+    /// Corners in tracer space, in the hierarchy's order.
+    corners: Vec<[Vec3; 3]>,
+    /// Flat index in [`Geometry`], in the hierarchy's order.
+    flat: Vec<u32>,
+    cuts: Cuts,
+    tracer_from_bake: f64,
+    /// How far shadow rays start before their origin, in tracer space: half of the least lift, so that a point exactly
+    /// on the edge where two walls meet is shaded by both, and by its own surface never.
+    run_up: f64,
+    /// For each instance, how far off its surface shadow rays start.
+    lift_m: Vec<f64>,
+    /// For each flat triangle, its middle.
+    centroid_m: Vec<Vec3>,
+    /// For each flat triangle, its instance.
+    instance: Vec<u32>,
+}
+
+/// A ray's direction with what the triangle test needs of it; shared by all rays towards one sun.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    unit: DVec3,
+    /// Axis along which the direction is largest, last; the other two in an order that keeps the winding.
+    axes: [usize; 3],
+    /// Shear that turns the direction into the last axis.
+    shear: DVec3,
+}
+
+/// The nearest surface along a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Flat index in [`Geometry`].
+    pub triangle: u32,
+    /// Distance from the ray's origin.
+    pub distance_m: f64,
+    /// Weights of the triangle's second and third corner.
+    pub barycentric: [f64; 2],
+}
+
+/// A triangle as an occluder, to be tried first by the next ray in the same direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Occluder(u32);
+
+impl Direction {
+    /// Prepares a direction of unit length.
+    pub fn new(unit: DVec3) -> Self {
+        let last = unit.abs().max_position();
+        let (mut first, mut second) = ((last + 1) % 3, (last + 2) % 3);
+        if unit[last] < 0.0 {
+            (first, second) = (second, first);
+        }
+        let shear = DVec3::new(unit[first], unit[second], 1.0) / unit[last];
+        Self { unit, axes: [first, second, last], shear }
+    }
+
+    /// The direction itself.
+    pub fn unit(&self) -> DVec3 {
+        self.unit
+    }
+
+    /// For obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.
+    fn ray_from(&self, origin: DVec3) -> Ray {
+        Ray::new_inf(origin.as_vec3a(), self.unit.as_vec3a() + Vec3A::ZERO)
+    }
+
+    /// Where a ray from `origin` meets a triangle, in front of the origin: distance and corner weights.
+    #[inline]
+    fn meet(&self, origin: DVec3, corners: &[Vec3; 3]) -> Option<(f64, [f64; 2])> {
+        let [a, b, c] = corners.map(|corner| self.sheared(corner.as_dvec3() - origin));
+        let edges = [c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x];
+        if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
+            return None;
+        }
+        let determinant = edges[0] + edges[1] + edges[2];
+        let distance = (edges[0] * a.z + edges[1] * b.z + edges[2] * c.z) / determinant;
+        // Not `distance <= 0.0`: a ray in the triangle's plane has a NaN here, and misses.
+        (distance > 0.0).then(|| (distance, [edges[1] / determinant, edges[2] / determinant]))
+    }
+
+    #[inline]
+    fn sheared(&self, v: DVec3) -> DVec3 {
+        let along = v[self.axes[2]];
+        let across = [v[self.axes[0]] - self.shear.x * along, v[self.axes[1]] - self.shear.y * along];
+        DVec3::new(across[0], across[1], self.shear.z * along)
+    }
+}
+
+impl Tracer {
+    /// Builds the hierarchy over every triangle that blocks light.
+    pub fn new(scene: &Scene, geometry: &Geometry) -> Self {
+        let tracer_from_bake = scale_to_tracer_space(geometry);
+        let solid: Vec<u32> =
+            (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(scene, i)).map(|i| i as u32).collect();
+        let scaled = |&i: &u32| geometry.triangles[i as usize].map(|v| (v.as_dvec3() * tracer_from_bake).as_vec3());
+        let padding = Vec3A::splat(BOX_PADDING * 1024.0);
+        let boxes: Vec<Padded> = solid.iter().map(|i| Padded::new(scaled(i), padding)).collect();
+        let bvh = match boxes.is_empty() {
+            true => CwBvh::default(),
+            false => build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut std::time::Duration::default()),
+        };
+        let flat: Vec<u32> = bvh.primitive_indices.iter().map(|&i| solid[i as usize]).collect();
+        let corners = flat.iter().map(scaled).collect();
+        let cuts = Cuts::new(scene, geometry, &flat);
+        let lift_m = lifts_m(scene, geometry);
+        let run_up = 0.5 * tracer_from_bake * lift_m.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let centroid_m = geometry.triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
+        let instance = geometry.instance.clone();
+        Self { bvh, corners, flat, cuts, tracer_from_bake, run_up, lift_m, centroid_m, instance }
+    }
+
+    /// Where a shadow ray from a point of a triangle should start: off the surface, along `side` (its unit normal, or
+    /// the opposite), by more than rounding moved its corners and less than anything one would model; and as far off
+    /// the triangle's edges, since a point exactly on one lies as much inside a room as outside.
+    pub fn lift(&self, point_m: DVec3, side: DVec3, triangle: u32) -> DVec3 {
+        let triangle = triangle as usize;
+        let lift_m = self.lift_m[self.instance[triangle] as usize];
+        let inwards = self.centroid_m[triangle].as_dvec3() - point_m;
+        point_m + side * lift_m + inwards.clamp_length_max(lift_m)
+    }
+
+    /// Whether anything solid lies along the direction.
+    pub fn is_occluded(&self, origin_m: DVec3, direction: &Direction) -> bool {
+        self.occluder(origin_m, direction).is_some()
+    }
+
+    /// Something solid along the direction, not always the nearest.
+    pub fn occluder(&self, origin_m: DVec3, direction: &Direction) -> Option<Occluder> {
+        let origin = self.shadow_start(origin_m, direction);
+        let ray = direction.ray_from(origin);
+        let mut found = None;
+        self.bvh.ray_traverse_miss(ray, |_, id| match self.meet(origin, direction, id) {
+            Some(_) => {
+                found = Some(Occluder(id as u32));
+                0.0
+            }
+            None => f32::INFINITY,
+        });
+        found
+    }
+
+    /// Whether one given triangle lies along the direction.
+    #[inline]
+    pub fn is_occluded_by(&self, occluder: Occluder, origin_m: DVec3, direction: &Direction) -> bool {
+        self.meet(self.shadow_start(origin_m, direction), direction, occluder.0 as usize).is_some()
+    }
+
+    /// Where a shadow ray really starts, in tracer space.
+    #[inline]
+    fn shadow_start(&self, origin_m: DVec3, direction: &Direction) -> DVec3 {
+        origin_m * self.tracer_from_bake - direction.unit * self.run_up
+    }
+
+    /// The nearest surface along the direction for which `accept` (given its flat triangle index) holds.
+    pub fn closest_hit_where(
+        &self,
+        origin_m: DVec3,
+        direction: &Direction,
+        accept: impl Fn(u32) -> bool,
+    ) -> Option<Hit> {
+        let origin = origin_m * self.tracer_from_bake;
+        let ray = direction.ray_from(origin);
+        let mut nearest: Option<(usize, f64, [f64; 2])> = None;
+        self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, id| {
+            let Some((distance, barycentric)) = self.meet(origin, direction, id) else { return f32::INFINITY };
+            if nearest.is_some_and(|(_, least, _)| distance >= least) || !accept(self.flat[id]) {
+                return f32::INFINITY;
+            }
+            nearest = Some((id, distance, barycentric));
+            // The walk prunes by this: never let rounding hide a box that holds something nearer.
+            (distance * (1.0 + 1e-6)) as f32
+        });
+        nearest.map(|(id, distance, barycentric)| Hit {
+            triangle: self.flat[id],
+            distance_m: distance / self.tracer_from_bake,
+            barycentric,
+        })
+    }
+
+    /// The nearest surface along the direction.
+    pub fn closest_hit(&self, origin_m: DVec3, direction: &Direction) -> Option<Hit> {
+        self.closest_hit_where(origin_m, direction, |_| true)
+    }
+
+    #[inline]
+    fn meet(&self, origin: DVec3, direction: &Direction, id: usize) -> Option<(f64, [f64; 2])> {
+        let met = direction.meet(origin, &self.corners[id])?;
+        self.cuts.is_solid(id, met.1).then_some(met)
+    }
+}
+
+/// The power of two that brings the largest coordinate to between 512 and 1024.
+fn scale_to_tracer_space(geometry: &Geometry) -> f64 {
+    let largest = geometry.triangles.iter().flatten().map(|v| v.abs().max_element()).fold(0.0, f32::max);
+    match largest > 0.0 {
+        true => 2f64.powi(9 - f64::from(largest).log2().floor() as i32),
+        false => 1.0,
+    }
+}
+
+/// For each instance, how far off its surface shadow rays start. Its corners were rounded twice, in the file (in object
+/// space, perhaps at map coordinates of millions) and in bake space; its neighbours' at most at the scene's edge.
+fn lifts_m(scene: &Scene, geometry: &Geometry) -> Vec<f64> {
+    let largest =
+        |points: &mut dyn Iterator<Item = &Vec3>| f64::from(points.map(|p| p.abs().max_element()).fold(0.0, f32::max));
+    let in_file: Vec<f64> = scene.meshes.iter().map(|mesh| largest(&mut mesh.positions.iter())).collect();
+    let neighbours = 0.25 * largest(&mut geometry.triangles.iter().flatten());
+    let lift = |(index, instance): (usize, &crate::scene::Instance)| {
+        let range = geometry.first_triangle[index] as usize..geometry.first_triangle[index + 1] as usize;
+        let in_bake = largest(&mut geometry.triangles[range].iter().flatten());
+        let axes = [0, 1, 2].map(|k| instance.bake_from_object.col(k).truncate().length());
+        let scale = axes.into_iter().fold(0.0, f64::max);
+        LIFT_STEPS * STEP * (0.5 * (in_bake + in_file[instance.mesh] * scale)).max(neighbours * 0.5)
+    };
+    scene.instances.iter().enumerate().map(lift).collect()
+}
+
+/// A triangle's box, grown.
+struct Padded(Aabb);
+
+impl Padded {
+    fn new(corners: [Vec3; 3], padding: Vec3A) -> Self {
+        let tight = Aabb::from_points(&corners.map(Vec3A::from));
+        Self(Aabb::new(tight.min - padding, tight.max + padding))
+    }
+}
+
+impl Boundable for Padded {
+    fn aabb(&self) -> Aabb {
+        self.0
+    }
+}
+
+/// Alpha masks of the triangles that have holes. Empty, and never asked, in a scene without any.
+#[derive(Default)]
+struct Cuts {
+    /// In the hierarchy's order: index in `triangles`, or [`Cuts::NONE`]. Empty if no triangle has holes.
+    of_triangle: Vec<u32>,
+    triangles: Vec<CutTriangle>,
+    masks: Vec<Mask>,
+}
+
+/// A triangle with holes.
+struct CutTriangle {
+    image_uvs: [Vec2; 3],
+    /// Vertex alpha times the material's factor.
+    alphas: [f32; 3],
+    cutoff: f32,
+    /// Index in [`Cuts::masks`], if the material has a texture.
+    mask: Option<u32>,
+}
+
+/// The alpha channel of a material's texture.
+struct Mask {
+    size: [u32; 2],
+    wrap: [Wrap; 2],
+    alpha: Vec<u8>,
+}
+
+impl Cuts {
+    const NONE: u32 = u32::MAX;
+
+    fn new(scene: &Scene, geometry: &Geometry, flat: &[u32]) -> Self {
+        if !scene.has_alpha_cut() {
+            return Self::default();
+        }
+        let mut cuts = Self { of_triangle: vec![Self::NONE; flat.len()], ..Self::default() };
+        let mut mask_of_material = vec![None; scene.materials.len()];
+        for (id, &triangle) in flat.iter().enumerate() {
+            let surface = geometry.surface(triangle as usize);
+            let mesh = &scene.meshes[scene.instances[surface.instance].mesh];
+            let material = &scene.materials[mesh.material];
+            let Alpha::Cut { cutoff } = material.alpha else { continue };
+            let texture = material.base_color_texture;
+            let mask = texture.map(|texture| {
+                *mask_of_material[mesh.material].get_or_insert_with(|| {
+                    cuts.masks.push(Mask::new(&scene.images[texture.image], texture.wrap));
+                    cuts.masks.len() as u32 - 1
+                })
+            });
+            cuts.of_triangle[id] = cuts.triangles.len() as u32;
+            cuts.triangles.push(CutTriangle {
+                image_uvs: texture.map_or([Vec2::ZERO; 3], |t| image_uvs(mesh, &t, surface.mesh_triangle)),
+                alphas: vertex_alphas(mesh, surface.mesh_triangle).map(|a| a * material.base_color.w),
+                cutoff,
+                mask,
+            });
+        }
+        cuts
+    }
+
+    #[inline]
+    fn is_solid(&self, id: usize, barycentric: [f64; 2]) -> bool {
+        match self.of_triangle.get(id) {
+            None | Some(&Self::NONE) => true,
+            Some(&cut) => self.is_solid_at(&self.triangles[cut as usize], barycentric.map(|b| b as f32)),
+        }
+    }
+
+    fn is_solid_at(&self, triangle: &CutTriangle, barycentric: [f32; 2]) -> bool {
+        let texel = triangle
+            .mask
+            .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
+        blend(triangle.alphas, barycentric) * texel >= triangle.cutoff
+    }
+}
+
+impl Mask {
+    fn new(image: &crate::scene::Image, wrap: [Wrap; 2]) -> Self {
+        let alpha = image.rgba.iter().map(|texel| texel[3]).collect();
+        Self { size: [image.width, image.height], wrap, alpha }
+    }
+
+    fn alpha_at(&self, uv: Vec2) -> f32 {
+        let [x, y] = nearest_texel(uv, self.size, self.wrap);
+        f32::from(self.alpha[y as usize * self.size[0] as usize + x as usize]) / 255.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{SceneBuilder, pseudo_random};
+
+    fn traced(builder: SceneBuilder) -> Tracer {
+        let scene = builder.build();
+        Tracer::new(&scene, &Geometry::new(&scene))
+    }
+
+    /// A sphere of `20 * 4^level` triangles.
+    fn sphere(level: u32) -> Vec<[Vec3; 3]> {
+        crate::testing::icosphere(level)
+    }
+
+    #[test]
+    fn no_ray_slips_out_of_a_closed_sphere() {
+        let triangles = sphere(4);
+        let tracer = traced(SceneBuilder::new().soup(&triangles));
+        let mut state = 7;
+        let mut random = || 2.0 * pseudo_random(&mut state) - 1.0;
+        for _ in 0..20_000 {
+            let origin = DVec3::new(random(), random(), random()) * 0.5;
+            // Towards corners and points of edges, where leaks live.
+            let triangle = triangles[((random() * 0.5 + 0.5) * (triangles.len() - 1) as f64) as usize];
+            let [a, b, _] = triangle.map(|v| v.as_dvec3());
+            for target in [a, (a + b) * 0.5, a.lerp(b, 0.1)] {
+                assert!(tracer.is_occluded(origin, &Direction::new((target - origin).normalize())));
+            }
+        }
+    }
+
+    #[test]
+    fn the_nearest_hit_is_brute_force_nearest() {
+        let mut state = 3;
+        let mut random = || (2.0 * pseudo_random(&mut state) - 1.0) as f32;
+        let triangles: Vec<[Vec3; 3]> = (0..300)
+            .map(|_| {
+                let centre = Vec3::new(random(), random(), random()) * 10.0;
+                [0; 3].map(|_| centre + Vec3::new(random(), random(), random()))
+            })
+            .collect();
+        let scene = SceneBuilder::new().soup(&triangles).build();
+        let tracer = Tracer::new(&scene, &Geometry::new(&scene));
+        for _ in 0..2000 {
+            let origin = Vec3::new(random(), random(), random()).as_dvec3() * 12.0;
+            let unit = Vec3::new(random(), random(), random()).as_dvec3().normalize();
+            let hit = tracer.closest_hit(origin - scene.centre_m, &Direction::new(unit)).map(|h| h.distance_m);
+            let expected = triangles.iter().filter_map(|t| moller_trumbore(origin, unit, t)).reduce(f64::min);
+            match (hit, expected) {
+                (None, None) => {}
+                (Some(found), Some(distance)) => assert!((found - distance).abs() < 1e-5, "{found} {distance}"),
+                _ => panic!("{hit:?} against {expected:?}"),
+            }
+        }
+    }
+
+    fn moller_trumbore(origin: DVec3, unit: DVec3, triangle: &[Vec3; 3]) -> Option<f64> {
+        let [a, b, c] = triangle.map(|v| v.as_dvec3());
+        let (e1, e2) = (b - a, c - a);
+        let p = unit.cross(e2);
+        let inverse = 1.0 / e1.dot(p);
+        let u = (origin - a).dot(p) * inverse;
+        let q = (origin - a).cross(e1);
+        let (v, t) = (unit.dot(q) * inverse, e2.dot(q) * inverse);
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
+    }
+
+    #[test]
+    fn a_ray_in_a_triangles_plane_or_from_its_corner_gives_no_nan() {
+        let triangle = [Vec3::ZERO, Vec3::X, Vec3::Z];
+        let tracer = traced(SceneBuilder::new().soup(&[triangle]));
+        for unit in [DVec3::X, -DVec3::X, DVec3::Z, DVec3::new(1.0, 0.0, 1.0).normalize()] {
+            assert!(!tracer.is_occluded(DVec3::new(-1.5, 0.0, -0.3), &Direction::new(unit)));
+        }
+        for corner in triangle {
+            let origin = tracer.lift(corner.as_dvec3() - DVec3::new(0.5, 0.0, 0.5), DVec3::Y, 0);
+            assert!(!tracer.is_occluded(origin, &Direction::new(DVec3::Y)));
+            assert!(tracer.is_occluded(origin, &Direction::new(-DVec3::Y)));
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_hides_nothing() {
+        assert!(!traced(SceneBuilder::new()).is_occluded(DVec3::ZERO, &Direction::new(DVec3::Y)));
+    }
+
+    #[test]
+    fn size_does_not_change_what_is_hit() {
+        for exponent in [-4, 0, 4] {
+            let size = 10f32.powi(exponent);
+            let scaled: Vec<_> = sphere(2).iter().map(|t| t.map(|v| v * size)).collect();
+            let tracer = traced(SceneBuilder::new().soup(&scaled));
+            let hit = tracer.closest_hit(DVec3::ZERO, &Direction::new(DVec3::new(0.3, 0.8, -0.5).normalize()));
+            let distance = hit.map_or(0.0, |h| h.distance_m) / f64::from(size);
+            assert!((0.94..=1.0).contains(&distance), "{distance} at size {size}");
+        }
+    }
+}
