@@ -19,6 +19,7 @@ pub mod playback;
 pub mod shade;
 pub mod sheet;
 pub mod shot;
+pub mod sides;
 pub mod stage;
 pub mod technique;
 #[doc(hidden)]

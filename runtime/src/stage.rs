@@ -1,5 +1,6 @@
 //! A baked set and its scene, joined: what every technique draws.
 
+use crate::sides::{Sides, sides};
 use crate::texture::MipChain;
 use glam::{DMat3, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
@@ -31,6 +32,8 @@ pub struct Stage {
     charts: Vec<Option<Chart>>,
     /// For each instance, unit shading normals in bake space from those in object space.
     normal_from_object: Vec<DMat3>,
+    /// For each triangle, the sides that are drawn.
+    sides: Vec<Sides>,
     /// For each image, its levels of detail, if a material draws it as a base colour.
     mips: Vec<Option<MipChain>>,
     /// Built when first asked for: drawing on the GPU needs none.
@@ -100,9 +103,11 @@ impl Stage {
         let normal_from_object =
             scene.instances.iter().map(|i| DMat3::from_mat4(i.bake_from_object).inverse().transpose()).collect();
         let geometry = Geometry::new(&scene);
+        let is_drawn = |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Air;
+        let sides = sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let tracer = OnceLock::new();
-        Ok(Self { scene, geometry, bits, pages, path, charts, normal_from_object, mips, tracer })
+        Ok(Self { scene, geometry, bits, pages, path, charts, normal_from_object, sides, mips, tracer })
     }
 
     /// The scene made ready for rays.
@@ -125,9 +130,9 @@ impl Stage {
         &self.scene.meshes[self.scene.instances[instance].mesh]
     }
 
-    /// Whether an instance is drawn: it has texels, and something of it can be seen.
-    pub fn is_drawn(&self, instance: usize) -> bool {
-        self.charts[instance].is_some() && self.scene.material(instance).alpha != Alpha::Air
+    /// The sides of a triangle that are drawn: neither, if it has no texels or nothing of it can be seen.
+    pub fn sides(&self, triangle: usize) -> Sides {
+        self.sides[triangle]
     }
 
     /// What the corners of a triangle carry.
@@ -179,10 +184,11 @@ impl Stage {
     pub fn see(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
         let direction = direction.normalize();
         self.tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
-            let instance = self.geometry.instance[triangle as usize] as usize;
-            self.is_drawn(instance)
-                && (self.scene.material(instance).is_double_sided
-                    || self.geometry.normal(triangle as usize).dot(direction) < 0.0)
+            let sides = self.sides[triangle as usize];
+            match sides.front == sides.back {
+                true => sides.front,
+                false => (self.geometry.normal(triangle as usize).dot(direction) < 0.0) == sides.front,
+            }
         })
     }
 

@@ -1,7 +1,12 @@
 //! Sets baked by code from scenes made by code, for tests of this crate and of those above it. Not part of the tool.
 
 use crate::camera::{Camera, View};
+use crate::compare::{Agreement, color_difference, edges, visibility_difference};
+use crate::gpu::GpuError;
+use crate::light::Moment;
+use crate::shot::Shot;
 use crate::stage::Stage;
+use crate::technique::{BakedCpu, BakedGpu, Technique};
 use glam::{DVec3, IVec2, Vec2};
 use sunbake::atlas::SurfacePoint;
 use sunbake::disk::manifest::InstanceEntry;
@@ -121,6 +126,38 @@ fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, c
         }
     }
     LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }
+}
+
+/// A moment of a stage drawn on the GPU and by its twin: how far they agree, to 1/255, on visibility and on the picture.
+pub fn twins(
+    on_gpu: &mut BakedGpu,
+    on_cpu: &mut BakedCpu,
+    shot: &Shot,
+    t: f64,
+) -> Result<[(&'static str, Agreement); 2], GpuError> {
+    let moment = Moment::new(shot.stage.path.as_ref(), t);
+    let seen = [on_gpu.visibility(shot, &moment)?, on_cpu.visibility(shot, &moment)?];
+    let color = [on_gpu.color(shot, &moment)?, on_cpu.color(shot, &moment)?];
+    let edges = edges(shot, &seen[1]);
+    let agreement = |difference| Agreement::new(&difference, &edges, 1.0 / 255.0 + 1e-6);
+    Ok([
+        ("visibility", agreement(visibility_difference(&seen[0], &seen[1]))),
+        ("picture", agreement(color_difference(&color[0], &color[1]))),
+    ])
+}
+
+/// A line of the table that tests print.
+pub fn table_line(name: &str, t: f64, what: &str, found: &Agreement) -> String {
+    format!(
+        "{name:26} t {t:.4}  {what:10} {:6} pixels, {:8.4} % within 1/255, mean {:.6}, worst {:.4}; over: {:3} at edges, {:3} \
+         elsewhere",
+        found.pixels,
+        found.share_within() * 100.0,
+        found.mean,
+        found.worst,
+        found.at_edges,
+        found.unexplained
+    )
 }
 
 /// A view between two points of world space.

@@ -4,42 +4,25 @@ use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::Bits;
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque};
-use sunbake_runtime::compare::{Agreement, color_difference, edges, visibility_difference};
+use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
-use sunbake_runtime::testing::{bake, equinox, view};
-use sunbake_runtime::{Filter, Moment, Shot, Stage};
+use sunbake_runtime::technique::{BakedCpu, BakedGpu};
+use sunbake_runtime::testing::{bake, equinox, table_line, twins, view};
+use sunbake_runtime::{Filter, Shot, Stage};
 
 fn gpu() -> Gpu {
     Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
 }
 
-/// Prints a line of the table and returns the shares within 1/255 of visibility and of colour.
+/// Prints the table and returns what it holds.
 fn compare(name: &str, gpu: &Gpu, stage: &Stage, eye: DVec3, target: DVec3, filter: Filter) -> Vec<Agreement> {
     let shot = Shot::new(stage, view(stage, eye, target, [192, 128]));
     let mut on_gpu = BakedGpu::new(gpu, stage, filter).unwrap();
     let mut on_cpu = BakedCpu::new(stage, filter);
     let mut found = Vec::new();
-    for i in 0..8 {
-        let moment = Moment::new(stage.path.as_ref(), (f64::from(i) + 0.5) / 8.0);
-        let visibility =
-            [&mut on_gpu as &mut dyn Technique, &mut on_cpu].map(|t| t.visibility(&shot, &moment).unwrap());
-        let color = [&mut on_gpu as &mut dyn Technique, &mut on_cpu].map(|t| t.color(&shot, &moment).unwrap());
-        let edges = edges(&shot, &visibility[1]);
-        for (what, difference) in [
-            ("visibility", visibility_difference(&visibility[0], &visibility[1])),
-            ("colour", color_difference(&color[0], &color[1])),
-        ] {
-            let agreement = Agreement::new(&difference, &edges, 1.0 / 255.0 + 1e-6);
-            println!(
-                "{name:18} t {:.3} {what:10} {} pixels, {:8.4} % within 1/255, worst {:.4}, over: {} at edges, {} elsewhere",
-                moment.t,
-                agreement.pixels,
-                agreement.share_within() * 100.0,
-                agreement.worst,
-                agreement.at_edges,
-                agreement.unexplained
-            );
+    for t in (0..8).map(|i| (f64::from(i) + 0.5) / 8.0) {
+        for (what, agreement) in twins(&mut on_gpu, &mut on_cpu, &shot, t).unwrap() {
+            println!("{}", table_line(name, t, what, &agreement));
             found.push(agreement);
         }
     }

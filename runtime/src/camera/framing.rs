@@ -81,7 +81,7 @@ fn detail(stage: &Stage) -> Vec<DVec3> {
     let mut total = 0.0;
     for triangle in 0..geometry.triangles.len() {
         let [a, b, c] = geometry.triangles[triangle].map(|v| v.as_dvec3());
-        let is_drawn = stage.is_drawn(geometry.instance[triangle] as usize);
+        let is_drawn = !stage.sides(triangle).is_none();
         total += if is_drawn { (b - a).cross(c - a).length().sqrt() } else { 0.0 };
         reached.push(total);
     }

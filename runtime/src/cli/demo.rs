@@ -28,6 +28,8 @@ const DATE: [u32; 3] = [2026, 6, 21];
 /// Size of each picture on the sheet, and samples along each of a pixel's edges.
 const SIZE: [u32; 2] = [400, 225];
 const SUPERSAMPLE: u32 = 2;
+/// Most columns of the sheet that stand side by side.
+const MOST_COLUMNS: usize = 4;
 /// Rays over the sun's disc for truth.
 const TRUTH_RAYS: u32 = 32;
 
@@ -167,6 +169,7 @@ fn sheet(columns: &[Column], baked: &BakeReport) -> Table {
         ],
         heads: columns.iter().map(|column| column.clock.clone()).collect(),
         feet: columns.iter().map(|column| format!("mean error {:.4}", column.cost.mean_error)).collect(),
+        band: columns.len().div_ceil(columns.len().div_ceil(MOST_COLUMNS)) as u32,
         legend: (["0".into(), "1".into()], "difference of visibility; 0 is none, 1 is sun for shade".into()),
         legend_color: |share| heat(sunbake_runtime::texture::srgb_from_linear(share)),
     }

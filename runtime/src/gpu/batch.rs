@@ -14,7 +14,7 @@ use sunbake_shaders::{ColorVertex, PositionVertex, SurfaceVariant, SurfaceVertex
 pub struct BatchKey {
     /// What the surface needs of its program.
     pub surface: SurfaceVariant,
-    /// Whether both sides are drawn.
+    /// Whether both sides are drawn; else the one that is counter-clockwise.
     pub is_two_sided: bool,
     /// The atlas page.
     pub page: u32,
@@ -70,26 +70,27 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
 
 /// Sorts what is drawn into batches and lays out the streams.
 pub fn batches(stage: &Stage) -> (Vec<Batch>, Vertices) {
-    let mut instances: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
-    for instance in (0..stage.scene.instances.len()).filter(|&i| stage.is_drawn(i)) {
-        if let Some(key) = key(stage, instance) {
-            instances.entry(key).or_default().push(instance);
+    let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
+    for instance in 0..stage.scene.instances.len() {
+        let Some(key) = key(stage, instance) else { continue };
+        for triangle in stage.geometry.first_triangle[instance]..stage.geometry.first_triangle[instance + 1] {
+            let sides = stage.sides(triangle as usize);
+            if !sides.is_none() {
+                let key = BatchKey { is_two_sided: sides.front && sides.back, ..key };
+                triangles.entry(key).or_default().push(triangle as usize);
+            }
         }
     }
     let mut vertices = Vertices::default();
-    let batches = instances.into_iter().map(|(key, instances)| {
-        let mut batch = Batch {
+    let batches = triangles.into_iter().map(|(key, triangles)| {
+        let batch = Batch {
             key,
-            vertex_count: 0,
+            vertex_count: 3 * triangles.len() as u32,
             first: vertices.positions.len() as u64,
             first_texture: vertices.textures.len() as u64,
             first_color: vertices.colors.len() as u64,
         };
-        for instance in instances {
-            let range = stage.geometry.first_triangle[instance]..stage.geometry.first_triangle[instance + 1];
-            range.for_each(|triangle| push_triangle(stage, instance, triangle as usize, &key, &mut vertices));
-        }
-        batch.vertex_count = (vertices.positions.len() as u64 - batch.first) as u32;
+        triangles.into_iter().for_each(|triangle| push_triangle(stage, triangle, &key, &mut vertices));
         batch
     });
     (batches.collect(), vertices)
@@ -104,17 +105,19 @@ fn key(stage: &Stage, instance: usize) -> Option<BatchKey> {
             has_vertex_color: stage.mesh(instance).colors.is_some(),
             is_cut: matches!(material.alpha, Alpha::Cut { .. }),
         },
-        is_two_sided: material.is_double_sided,
+        is_two_sided: false,
         page: stage.chart(instance)?.page,
         texture,
     })
 }
 
-fn push_triangle(stage: &Stage, instance: usize, triangle: usize, key: &BatchKey, vertices: &mut Vertices) {
+fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut Vertices) {
+    let instance = stage.geometry.instance[triangle] as usize;
     let corners = stage.corners(triangle);
     let front_normal = stage.geometry.normal(triangle).as_vec3().to_array();
-    // Mirroring turns the winding over: corners are taken in the order that is counter-clockwise from the front.
-    let order = if stage.scene.instances[instance].is_mirrored { [0, 2, 1] } else { [0, 1, 2] };
+    // Corners are taken in the order that is counter-clockwise from the side that is drawn. Mirroring turns it over.
+    let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
+    let order = if is_turned { [0, 2, 1] } else { [0, 1, 2] };
     let texels_per_metre = stage.texels_per_metre(triangle, corners.image_uv);
     for k in order {
         let position_m = stage.geometry.triangles[triangle][k].to_array();

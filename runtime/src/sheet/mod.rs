@@ -33,8 +33,8 @@ pub fn contact_sheet(pictures: &[(Raster<[u8; 3]>, String)], columns: u32) -> Ra
     canvas.finish()
 }
 
-/// A table of pictures: a name before each row, a line of words over and one under each column, and a bar of colours that
-/// says what those of the last row mean.
+/// A table of pictures: a name before each row, words over and under each column, and a bar of colours that says what
+/// those of the last row mean. Long tables are broken into bands of [`Table::band`] columns, one under the other.
 pub struct Table {
     /// Lines above everything; the first is larger.
     pub title: Vec<String>,
@@ -44,40 +44,60 @@ pub struct Table {
     pub heads: Vec<String>,
     /// Under each column.
     pub feet: Vec<String>,
+    /// Columns side by side.
+    pub band: u32,
     /// What the last row's colours mean: a value for each end of the bar, and words beside it.
     pub legend: ([String; 2], String),
     /// How a share of the bar is coloured.
     pub legend_color: fn(f32) -> [u8; 3],
 }
 
+/// Height of a line of words with the space below it.
+const LINE: u32 = CELL[1] * SCALE + GAP;
+
 impl Table {
     /// Draws the table.
     pub fn draw(&self) -> Raster<[u8; 3]> {
         let [width, height] = self.rows.iter().flat_map(|(_, row)| row).map(|p| p.size).next().unwrap_or([1, 1]);
         let columns = self.heads.len() as u32;
-        let line = CELL[1] * SCALE + GAP;
-        let left = GAP + self.rows.iter().map(|(name, _)| text_width(name, SCALE)).max().unwrap_or(0) + 2 * GAP;
-        let top = GAP + line * (self.title.len() as u32 + 1) + line;
-        let bottom = top + self.rows.len() as u32 * (height + GAP);
-        let mut canvas = Canvas::new([left + columns * (width + GAP), bottom + 3 * line + GAP]);
+        let band = self.band.clamp(1, columns.max(1));
+        let left = 3 * GAP + self.rows.iter().map(|(name, _)| text_width(name, SCALE)).max().unwrap_or(0);
+        let top = GAP + LINE * (self.title.len() as u32 + 1);
+        let band_height = 2 * LINE + GAP + self.rows.len() as u32 * (height + GAP);
+        let bottom = top + columns.div_ceil(band) * band_height;
+        let mut canvas = Canvas::new([left + band * (width + GAP), bottom + LINE]);
         for (i, text) in self.title.iter().enumerate() {
-            let (scale, ink) = if i == 0 { (SCALE + 1, INK) } else { (SCALE, QUIET_INK) };
-            canvas.text([GAP, GAP + i as u32 * line + if i == 0 { 0 } else { GAP }], text, scale, ink);
+            let (scale, ink, below) = if i == 0 { (SCALE + 1, INK, 0) } else { (SCALE, QUIET_INK, GAP) };
+            canvas.text([GAP, GAP + i as u32 * LINE + below], text, scale, ink);
         }
-        for (i, (name, pictures)) in self.rows.iter().enumerate() {
-            let y = top + i as u32 * (height + GAP);
-            canvas.text([GAP, y + height / 2 - CELL[1]], name, SCALE, INK);
-            for (k, picture) in pictures.iter().enumerate() {
-                canvas.picture([left + k as u32 * (width + GAP), y], picture);
+        for column in 0..columns {
+            let corner = [left + column % band * (width + GAP), top + column / band * band_height];
+            self.draw_column(&mut canvas, corner, column as usize);
+            if column % band == 0 {
+                self.draw_names(&mut canvas, corner[1] + LINE, height);
             }
         }
-        for k in 0..columns {
-            let middle = left + k * (width + GAP) + width / 2;
-            canvas.text_centred([middle, top - line], &self.heads[k as usize], SCALE, INK);
-            canvas.text_centred([middle, bottom], &self.feet[k as usize], SCALE, INK);
-        }
-        self.draw_legend(&mut canvas, [left, bottom + line + GAP], width);
+        self.draw_legend(&mut canvas, [left, bottom], width);
         canvas.finish()
+    }
+
+    fn draw_column(&self, canvas: &mut Canvas, [x, y]: [u32; 2], column: usize) {
+        let pictures = || self.rows.iter().filter_map(|(_, pictures)| pictures.get(column));
+        let middle = x + pictures().next().map_or(0, |picture| picture.size[0] / 2);
+        canvas.text_centred([middle, y + GAP / 2], &self.heads[column], SCALE, INK);
+        let mut y = y + LINE;
+        for picture in pictures() {
+            canvas.picture([x, y], picture);
+            y += picture.size[1] + GAP;
+        }
+        canvas.text_centred([middle, y], &self.feet[column], SCALE, INK);
+    }
+
+    fn draw_names(&self, canvas: &mut Canvas, top: u32, height: u32) {
+        for (i, (name, _)) in self.rows.iter().enumerate() {
+            let y = top + i as u32 * (height + GAP) + height / 2;
+            canvas.text([GAP, y.saturating_sub(CELL[1])], name, SCALE, INK);
+        }
     }
 
     fn draw_legend(&self, canvas: &mut Canvas, [x, y]: [u32; 2], width: u32) {
@@ -97,6 +117,23 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_holds_every_picture_in_bands() {
+        let row = |shade: u8| (0..5).map(|_| Raster::filled([50, 20], [shade, 0, 200])).collect::<Vec<_>>();
+        let table = Table {
+            title: vec!["title".into()],
+            rows: vec![("first".into(), row(1)), ("second".into(), row(2))],
+            heads: vec!["head".into(); 5],
+            feet: vec!["foot".into(); 5],
+            band: 3,
+            legend: (["0".into(), "1".into()], "words".into()),
+            legend_color: heat,
+        };
+        let sheet = table.draw();
+        let count = |color: [u8; 3]| sheet.pixels.iter().filter(|p| **p == color).count();
+        assert_eq!((count([1, 0, 200]), count([2, 0, 200])), (5000, 5000));
+    }
 
     #[test]
     fn a_sheet_holds_every_picture_and_its_words() {
