@@ -11,6 +11,7 @@ mod arrange;
 mod build;
 mod coverage;
 mod existing;
+mod gaps;
 mod gutter;
 mod of_set;
 mod outline;

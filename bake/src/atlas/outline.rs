@@ -1,7 +1,7 @@
 //! The outline of a chart: what of its box it takes, seen from its four sides.
 //!
 //! Practice: a chart is drawn conservatively into its box, every row and column keeps the first and last texel touched, and
-//! both are widened by the padding. A row or column that nothing touches takes nothing.
+//! both are widened by the padding. A row or column that nothing touches counts as full.
 
 use super::coverage::{self, Corners};
 
@@ -31,20 +31,18 @@ impl Outline {
                 }
             }
         }
-        Self { columns: pad(&columns, padding), rows: pad(&rows, padding) }
+        Self { columns: pad(&columns, height, padding), rows: pad(&rows, width, padding) }
     }
 
     /// Texels between the first and last of each column.
     pub fn area(&self) -> f64 {
-        self.columns.iter().map(|c| f64::from(c.1.saturating_sub(c.0))).sum()
+        self.columns.iter().map(|c| f64::from(c.1 - c.0)).sum()
     }
 
     /// For each column of the outline after some quarter turns, its rows.
     pub fn columns(&self, turns: u8) -> Vec<(u16, u16)> {
         let (width, height) = (self.columns.len() as u16, self.rows.len() as u16);
-        let mirror = |&(low, high): &(u16, u16), side: u16| {
-            if low < high { (side - high, side - low) } else { (low, high) }
-        };
+        let mirror = |&(low, high): &(u16, u16), side: u16| (side - high, side - low);
         match turns % 4 {
             0 => self.columns.clone(),
             1 => self.rows.iter().rev().copied().collect(),
@@ -58,14 +56,15 @@ fn widen(range: &mut (u16, u16), by: (u16, u16)) {
     *range = (range.0.min(by.0), range.1.max(by.1));
 }
 
-/// Widens by `padding` in both directions, in a box that is larger by it on every side.
-fn pad(lines: &[(u16, u16)], padding: u32) -> Vec<(u16, u16)> {
+/// Widens lines, each `length` long, by `padding` in both directions, in a box that is larger by it on every side.
+fn pad(lines: &[(u16, u16)], length: u32, padding: u32) -> Vec<(u16, u16)> {
     let around = 2 * padding as usize;
     let padded = |line: usize| {
         let near = &lines[line.saturating_sub(around)..lines.len().min(line + 1)];
         let touched = near.iter().filter(|l| **l != UNTOUCHED).copied();
         let range = touched.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-        range.map_or(UNTOUCHED, |(low, high)| (low, high + around as u16))
+        let (low, high) = range.unwrap_or((0, length as u16));
+        (low, high + around as u16)
     };
     (0..lines.len() + around).map(padded).collect()
 }

@@ -1,14 +1,15 @@
 //! Packing shapes into a strip.
 //!
 //! Theory: a skyline with profiles. What is packed is kept as its upper outline, one height a column; a shape, given by its
-//! lower and upper outline, goes where its far edge comes to lie lowest, largest first, in the best of four turns. So shapes
-//! nest into each other from above, though not into holes. Based on: Nöll and Stricker, "Efficient Packing of Arbitrarily
-//! Shaped Charts for Automatic Texture Atlas Generation", 2011, less their filling of holes; and Jylänki, "A Thousand Ways
-//! to Pack the Bin", 2010, section 4, for plain rectangles.
+//! lower and upper outline, goes where its far edge comes to lie lowest, largest first, in the best of four turns. What that
+//! shuts off from above is kept as [`Gaps`] for smaller shapes. Based on: Nöll and Stricker, "Efficient Packing of
+//! Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011, and Jylänki, "A Thousand Ways to Pack the Bin",
+//! 2010, section 4.
 //!
 //! Practice: most positions are refused by one column that stands too high, and so are all others that would have the
 //! shape over that column: the search jumps past it. Small shapes are packed as their boxes.
 
+use super::gaps::Gaps;
 use super::outline::Outline;
 
 /// Something to pack, in texels.
@@ -106,9 +107,12 @@ impl Turned {
         best
     }
 
-    fn raise(&self, skyline: &mut [u32], x: u32, y: u32) {
-        for column in 0..self.width {
-            let high = &mut skyline[(x + column) as usize];
+    /// Puts the shape on the skyline; what lies free below it goes to the gaps.
+    fn raise(&self, skyline: &mut [u32], gaps: &mut Gaps, x: u32, y: u32) {
+        let under = &mut skyline[x as usize..][..self.width as usize];
+        let free: Vec<_> = (0..).zip(under.iter()).map(|(column, &high)| (high, y + self.bottom(column))).collect();
+        gaps.add_region(x, &free);
+        for (column, high) in (0..).zip(under) {
             *high = (*high).max(y + self.top(column));
         }
     }
@@ -122,8 +126,14 @@ pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> 
         (std::cmp::Reverse((shape.width.max(shape.height), shape.width.min(shape.height))), i)
     });
     let mut skyline = vec![0; width as usize];
+    let mut gaps = Gaps::new(shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1));
     let mut packed = Packed { spots: vec![Spot::default(); shapes.len()], ..Packed::default() };
     for index in order {
+        let Shape { width: across, height: along, may_turn, .. } = shapes[index];
+        if let Some((x, y, is_turned)) = gaps.take(across, along, may_turn) {
+            packed.spots[index] = Spot { x, y, turns: u8::from(is_turned) };
+            continue;
+        }
         let mut best: Option<(Spot, Turned)> = None;
         for turns in shapes[index].turns() {
             let turned = Turned::new(&shapes[index], turns);
@@ -133,7 +143,7 @@ pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> 
             }
         }
         let (spot, turned) = best?;
-        turned.raise(&mut skyline, spot.x, spot.y);
+        turned.raise(&mut skyline, &mut gaps, spot.x, spot.y);
         packed.spots[index] = spot;
         packed.width = packed.width.max(spot.x + turned.width);
         packed.height = packed.height.max(spot.y + turned.height);

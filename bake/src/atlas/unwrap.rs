@@ -21,7 +21,7 @@ use uvunwrap::{Density, Error, MeshInput, Options, OutputMesh, Packing};
 /// Meshes from this size on are tried as a height field.
 const HEIGHT_FIELD_TRIANGLES: usize = 1_000;
 /// Least cosine between a height field's axis and its triangles' normals: their texels stretch by at most its inverse.
-const HEIGHT_FIELD_COS: f64 = 0.4;
+const HEIGHT_FIELD_COS: f64 = 0.2;
 /// About how many triangles a chart of a large mesh may have.
 const CHART_TRIANGLES: usize = 4_000;
 
