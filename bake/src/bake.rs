@@ -149,7 +149,8 @@ fn bake_prepared(
     check_memory(scene, settings, settings.page_size_texels)?;
     check_cancelled(progress)?;
     let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
-    let atlas = timed(&mut seconds.unwrap, || unwrap(scene, settings, progress))?;
+    let mut warnings = prepared.warnings.clone();
+    let (atlas, settings) = &timed(&mut seconds.unwrap, || unwrap_somehow(scene, settings, &mut warnings, progress))?;
 
     progress.start(Stage::Bvh, 0);
     let geometry = Geometry::new(scene);
@@ -159,7 +160,7 @@ fn bake_prepared(
     });
 
     let engine = engine.as_ref().map(|e| e as &dyn Engine);
-    let mut pages = PageBaker::new(scene, &geometry, &atlas, settings, engine, progress, seconds);
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
@@ -170,13 +171,12 @@ fn bake_prepared(
     let manifest = Manifest {
         stats,
         atlases,
-        instances: instance_entries(scene, &atlas, &written.places),
+        instances: instance_entries(scene, atlas, &written.places),
         error: loss.finish(duration_min),
-        ..manifest_of(prepared, &atlas, settings)
+        ..manifest_of(prepared, atlas, settings)
     };
     check_cancelled(progress)?;
     writer.finish(&manifest)?;
-    let mut warnings = prepared.warnings.clone();
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(loss_warning(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
@@ -236,6 +236,52 @@ fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) 
             Ok(None)
         }
     }
+}
+
+/// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
+/// settings that it came to.
+fn unwrap_somehow(
+    scene: &Scene,
+    asked: &BakeSettings,
+    warnings: &mut Vec<String>,
+    progress: &dyn Progress,
+) -> Result<(Atlas, BakeSettings), BakeError> {
+    let mut settings = asked.clone();
+    loop {
+        let error = match unwrap(scene, &settings, progress) {
+            Ok(atlas) => {
+                if settings != *asked {
+                    warnings.push(settled_for(&settings, asked));
+                }
+                return Ok((atlas, settings));
+            }
+            Err(error @ AtlasError::PageTooSmall { .. }) => error,
+            Err(error) => return Err(error.into()),
+        };
+        if settings.padding_texels > 1 {
+            settings.padding_texels = 1;
+        } else {
+            settings.padding_texels = asked.padding_texels;
+            settings.page_size_texels *= 2;
+        }
+        let is_possible = settings.page_size_texels <= LARGEST_PAGE_TEXELS;
+        if !is_possible || check_memory(scene, &settings, settings.page_size_texels).is_err() {
+            return Err(error.into());
+        }
+    }
+}
+
+/// Largest page that is tried.
+const LARGEST_PAGE_TEXELS: u32 = 16_384;
+
+/// What the user asked for and did not get, with the flag that spares the search.
+fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> String {
+    let [padding, edge] = [settings.padding_texels, settings.page_size_texels];
+    let had = format!("a mesh has too many charts for a page of {} texels", asked.page_size_texels);
+    if edge == asked.page_size_texels {
+        return format!("{had} with --padding {}: it was baked with --padding {padding}", asked.padding_texels);
+    }
+    format!("{had}: it was baked on pages of {edge}; give --size {edge} or more, or simplify the mesh")
 }
 
 fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
