@@ -63,7 +63,10 @@ fn plan_for_pages(
     loop {
         if let Some(plan) = densest(settings, count, items, meter) {
             if count > pages {
-                warnings.push(format!("too many charts for the {pages} pages asked for: there are {count}"));
+                warnings.push(format!(
+                    "the charts take {count} pages of {} texels; a larger --size takes fewer",
+                    settings.page_size_texels
+                ));
             }
             return Ok(plan);
         }
