@@ -2,7 +2,7 @@
 
 use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, PageSamples};
 use crate::disk::manifest::{self, ArcEntry, InstanceEntry, Manifest, PathEntry, StageSeconds, Stats};
-use crate::disk::write::{SCENE_FILE, SetWriter, WriteError, check_target};
+use crate::disk::write::{SCENE_FILE, SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge};
 use crate::loss::LossTally;
 use crate::maps::{Lane, LaneMaps, LayerMaps, PageEncoder, PageMaps};
@@ -32,8 +32,11 @@ pub enum BakeError {
     #[error(transparent)]
     Light(#[from] LightError),
     /// The scene cannot be laid out.
-    #[error(transparent)]
-    Atlas(#[from] AtlasError),
+    #[error("{0}; give another --size, --padding or --texels-per-metre")]
+    Atlas(AtlasError),
+    /// The listener asked to stop.
+    #[error("stopped before the end; nothing was written")]
+    Cancelled,
     /// The scene cannot be written again.
     #[error(transparent)]
     TooLarge(#[from] GlbTooLarge),
@@ -42,12 +45,14 @@ pub enum BakeError {
     Write(#[from] WriteError),
     /// More memory is needed than allowed.
     #[error(
-        "{what} needs about {needed_mib} MiB of memory and --max-memory allows {allowed_mib} MiB: \
-         give a smaller --size or --texels-per-metre, or a larger --max-memory"
+        "{what} needs about {needed_mib} MiB of memory and {allowed_mib} MiB are allowed: \
+         give a smaller {smaller}, or a larger --max-memory"
     )]
     Memory {
         /// What needs it.
         what: String,
+        /// The flag that makes it need less.
+        smaller: &'static str,
         /// How much, in MiB.
         needed_mib: u64,
         /// How much is allowed, in MiB.
@@ -61,6 +66,21 @@ pub enum BakeError {
         /// What the system says.
         reason: String,
     },
+}
+
+impl From<AtlasError> for BakeError {
+    fn from(error: AtlasError) -> Self {
+        match error {
+            AtlasError::Cancelled => Self::Cancelled,
+            AtlasError::TooDense { density_per_metre, texels, most } => Self::Memory {
+                what: format!("a density of {density_per_metre} texels a metre (about {texels} texels)"),
+                smaller: "--texels-per-metre",
+                needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
+                allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,
+            },
+            other => Self::Atlas(other),
+        }
+    }
 }
 
 /// What a finished bake has to say.
@@ -106,10 +126,11 @@ pub fn bake(
     settings: &BakeSettings,
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
-    check_target(target, force)?;
+    // First of all the folder: nobody should wait for a bake that cannot be kept.
+    let writer = SetWriter::begin(target, force)?;
     in_pool(settings.threads, || {
         let prepared = prepare(scene_file, settings, progress)?;
-        bake_prepared(&prepared, target, force, settings, progress)
+        bake_prepared(&prepared, writer, settings, progress)
     })?
 }
 
@@ -120,15 +141,16 @@ fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T
 
 fn bake_prepared(
     prepared: &Prepared,
-    target: &Path,
-    force: bool,
+    mut writer: SetWriter,
     settings: &BakeSettings,
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
     let Prepared { scene, path, plan, .. } = prepared;
     check_memory(scene, settings, settings.page_size_texels)?;
+    check_cancelled(progress)?;
     let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
-    let atlas = timed(&mut seconds.unwrap, || unwrap(scene, settings, progress))?;
+    let mut warnings = prepared.warnings.clone();
+    let (atlas, settings) = &timed(&mut seconds.unwrap, || unwrap_somehow(scene, settings, &mut warnings, progress))?;
 
     progress.start(Stage::Bvh, 0);
     let geometry = Geometry::new(scene);
@@ -137,9 +159,8 @@ fn bake_prepared(
         EngineChoice::Rays(count) => RayEngine::new(&tracer, path, count),
     });
 
-    let mut writer = SetWriter::begin(target, force)?;
     let engine = engine.as_ref().map(|e| e as &dyn Engine);
-    let mut pages = PageBaker::new(scene, &geometry, &atlas, settings, engine, progress, seconds);
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
@@ -150,12 +171,12 @@ fn bake_prepared(
     let manifest = Manifest {
         stats,
         atlases,
-        instances: instance_entries(scene, &atlas, &written.places),
+        instances: instance_entries(scene, atlas, &written.places),
         error: loss.finish(duration_min),
-        ..manifest_of(prepared, &atlas, settings)
+        ..manifest_of(prepared, atlas, settings)
     };
+    check_cancelled(progress)?;
     writer.finish(&manifest)?;
-    let mut warnings = prepared.warnings.clone();
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(loss_warning(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
@@ -184,6 +205,10 @@ fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSettings) -> M
     }
 }
 
+fn check_cancelled(progress: &dyn Progress) -> Result<(), BakeError> {
+    if progress.is_cancelled() { Err(BakeError::Cancelled) } else { Ok(()) }
+}
+
 fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     let started = Instant::now();
     let value = work();
@@ -204,13 +229,59 @@ fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) 
         DayOutcome::Path(path) => Ok(Some(path)),
         DayOutcome::NoSun { highest_elevation_deg, .. } => {
             warnings.push(format!(
-                "the sun does not rise at latitude {} on {}: its centre stays {:.1} degrees below the horizon, so no \
+                "the sun does not rise at latitude {} on {}: its centre stays at least {:.1} degrees below the horizon, so no \
                  sun is baked; choose another --date for one",
                 request.latitude_deg, request.date, -highest_elevation_deg
             ));
             Ok(None)
         }
     }
+}
+
+/// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
+/// settings that it came to.
+fn unwrap_somehow(
+    scene: &Scene,
+    asked: &BakeSettings,
+    warnings: &mut Vec<String>,
+    progress: &dyn Progress,
+) -> Result<(Atlas, BakeSettings), BakeError> {
+    let mut settings = asked.clone();
+    loop {
+        let error = match unwrap(scene, &settings, progress) {
+            Ok(atlas) => {
+                if settings != *asked {
+                    warnings.push(settled_for(&settings, asked));
+                }
+                return Ok((atlas, settings));
+            }
+            Err(error @ AtlasError::PageTooSmall { .. }) => error,
+            Err(error) => return Err(error.into()),
+        };
+        if settings.padding_texels > 1 {
+            settings.padding_texels = 1;
+        } else {
+            settings.padding_texels = asked.padding_texels;
+            settings.page_size_texels *= 2;
+        }
+        let is_possible = settings.page_size_texels <= LARGEST_PAGE_TEXELS;
+        if !is_possible || check_memory(scene, &settings, settings.page_size_texels).is_err() {
+            return Err(error.into());
+        }
+    }
+}
+
+/// Largest page that is tried.
+const LARGEST_PAGE_TEXELS: u32 = 16_384;
+
+/// What the user asked for and did not get, with the flag that spares the search.
+fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> String {
+    let [padding, edge] = [settings.padding_texels, settings.page_size_texels];
+    let had = format!("a mesh has too many charts for a page of {} texels", asked.page_size_texels);
+    if edge == asked.page_size_texels {
+        return format!("{had} with --padding {}: it was baked with --padding {padding}", asked.padding_texels);
+    }
+    format!("{had}: it was baked on pages of {edge}; give --size {edge} or more, or simplify the mesh")
 }
 
 fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
@@ -227,7 +298,7 @@ fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Re
         let now = (share * 1000.0) as u64;
         let before = told.fetch_max(now, std::sync::atomic::Ordering::Relaxed);
         progress.advance(now.saturating_sub(before));
-        true
+        !progress.is_cancelled()
     })
 }
 
@@ -248,6 +319,7 @@ fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -
     }
     Err(BakeError::Memory {
         what: format!("a page of {page_size_texels} x {page_size_texels} texels"),
+        smaller: "--size",
         needed_mib: needed >> 20,
         allowed_mib: settings.max_memory_bytes >> 20,
     })
@@ -287,10 +359,10 @@ impl<'a> PageBaker<'a> {
         Self { scene, geometry, atlas, settings, engine, progress, stats, loss: LossTally::default() }
     }
 
-    fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<manifest::AtlasEntry>, WriteError> {
+    fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<manifest::AtlasEntry>, BakeError> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
         for index in 0..self.atlas.pages.len() {
-            let maps = self.bake(index);
+            let maps = self.bake(index)?;
             self.progress.start(Stage::Write, 0);
             let write = || writer.write_page(index, &maps, self.settings.bits);
             entries.push(timed(&mut self.stats.seconds.write, write)?);
@@ -298,7 +370,7 @@ impl<'a> PageBaker<'a> {
         Ok(entries)
     }
 
-    fn bake(&mut self, index: usize) -> PageMaps {
+    fn bake(&mut self, index: usize) -> Result<PageMaps, BakeError> {
         let size = self.atlas.pages[index];
         let started = Instant::now();
         let samples = atlas::sample_page(self.scene, self.geometry, self.atlas, index as u32);
@@ -308,20 +380,24 @@ impl<'a> PageBaker<'a> {
         let lanes = match self.engine {
             None => Vec::new(),
             Some(engine) => {
-                let (tables, work) = self.find_lit(engine, &samples.samples);
+                let (tables, work) = self.find_lit(engine, &samples.samples).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
                 vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &tables) }]
             }
         };
-        PageMaps { width: size.width, height: size.height, lanes, ao: None }
+        check_cancelled(self.progress)?;
+        Ok(PageMaps { width: size.width, height: size.height, lanes, ao: None })
     }
 
-    fn find_lit(&mut self, engine: &dyn Engine, samples: &[atlas::Sample]) -> (Vec<IntervalTable>, Work) {
+    fn find_lit(&mut self, engine: &dyn Engine, samples: &[atlas::Sample]) -> Option<(Vec<IntervalTable>, Work)> {
         self.progress.start(Stage::Visibility, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
             let point = |i: usize| atlas::surface_point(scene, geometry, &samples[i]);
-            visibility::find_lit(engine, samples.len(), point, |count| progress.advance(count as u64))
+            visibility::find_lit(engine, samples.len(), point, |count| {
+                progress.advance(count as u64);
+                !progress.is_cancelled()
+            })
         })
     }
 

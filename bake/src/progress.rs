@@ -37,6 +37,10 @@ pub trait Progress: Sync {
     fn start(&self, stage: Stage, total: u64);
     /// The current stage got on by so much.
     fn advance(&self, by: u64);
+    /// Whether the bake should stop: it then fails with [`crate::BakeError::Cancelled`], and leaves nothing behind.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// Listens to nothing.

@@ -2,6 +2,7 @@
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use sunbake::maps::Bits;
 use sunbake::settings::EngineChoice;
 use sunbake::sun::Date;
 
@@ -16,10 +17,21 @@ pub struct Args {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Bake a glTF scene into a set of maps.
+    ///
+    /// Writes a folder: sunbake.json (what is in it), scene.glb (the scene with the bake's texture coordinates as
+    /// TEXCOORD_1) and pairs of PNGs with the times at which every texel begins and ceases to see the sun. It is written
+    /// beside its target and moved into place when it is whole.
+    ///
+    /// Exit codes: 0 done, 1 usage, 2 reading or writing failed, 3 the input is bad, 4 a defect of sunbake, 5 not
+    /// supported by this machine, 130 or 143 stopped by a signal.
     Bake(Box<BakeArgs>),
     /// Print what a set holds, what it cost and what it lost.
     Inspect(InspectArgs),
     /// Print some covered texels of a set as JSON lines.
+    ///
+    /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the sun
+    /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json) and ao. With these, any
+    /// ray tracer can check a bake.
     Texels(TexelsArgs),
 }
 
@@ -33,13 +45,20 @@ pub enum Preset {
     Final,
 }
 
+/// What `--only` may name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Only {
+    /// When texels see the sun.
+    Intervals,
+}
+
 #[derive(Debug, ClapArgs)]
 pub struct BakeArgs {
     /// The scene: .gltf or .glb.
     pub scene: PathBuf,
     /// Folder to write the set to.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "DIR", required_unless_present = "explain")]
+    pub output: Option<PathBuf>,
     /// Replace an older set in that folder.
     #[arg(long)]
     pub force: bool,
@@ -50,11 +69,14 @@ pub struct BakeArgs {
     pub sun: SunArgs,
     #[command(flatten)]
     pub cost: CostArgs,
-    #[command(flatten)]
-    pub output_manners: OutputArgs,
+    /// What to bake, of: intervals (when the sun is seen). This version bakes nothing else.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = parse_only)]
+    pub only: Vec<Only>,
     /// Print what would be baked and why, and bake nothing.
     #[arg(long)]
     pub explain: bool,
+    #[command(flatten)]
+    pub output_manners: OutputArgs,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -104,8 +126,8 @@ pub struct CostArgs {
     /// Bits of a stored time. [default: 8 in draft, else 16]
     ///
     /// 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the bytes.
-    #[arg(long, value_name = "8|16", value_parser = clap::value_parser!(u32).range(8..=16))]
-    pub bits: Option<u32>,
+    #[arg(long, value_name = "8|16", value_parser = parse_bits)]
+    pub bits: Option<Bits>,
     /// Most layers of four intervals a texel, 1 to 16. [default: 2, 4 or 8, by preset]
     ///
     /// Layers that no texel needs are not written. What does not fit is merged at the least loss, and reported.
@@ -128,8 +150,8 @@ pub struct OutputArgs {
     /// Print the result as JSON on stdout.
     #[arg(long)]
     pub json: bool,
-    /// Print nothing but errors.
-    #[arg(short, long)]
+    /// Print nothing but errors (and the JSON, with --json).
+    #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
     /// Print every stage's seconds.
     #[arg(short, long)]
@@ -162,6 +184,19 @@ fn parse_place(text: &str) -> Result<[f64; 2], String> {
     let (latitude, longitude) = text.split_once(',').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
     Ok([number(latitude)?, number(longitude)?])
+}
+
+fn parse_only(text: &str) -> Result<Only, String> {
+    match text {
+        "intervals" => Ok(Only::Intervals),
+        "ao" => Err("ambient occlusion is not supported yet: give `--only intervals`, or leave --only out".into()),
+        _ => Err(format!("`{text}` is nothing to bake: give `intervals`")),
+    }
+}
+
+fn parse_bits(text: &str) -> Result<Bits, String> {
+    let count = text.parse().ok().and_then(Bits::from_count);
+    count.ok_or_else(|| format!("`{text}` is no depth of a stored time: give 8 or 16"))
 }
 
 fn parse_window(text: &str) -> Result<[f64; 2], String> {

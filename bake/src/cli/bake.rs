@@ -1,13 +1,13 @@
 //! `sunbake bake`.
 
-use super::args::{BakeArgs, Preset};
+use super::args::{BakeArgs, OutputArgs, Preset};
 use super::exit::Failure;
-use super::inspect;
+use super::out::{print, print_json, warn};
+use super::summary;
 use super::terminal::TerminalProgress;
+use std::path::Path;
+use sunbake::BakeReport;
 use sunbake::atlas::Density;
-use sunbake::disk::manifest::StageSeconds;
-use sunbake::maps::Bits;
-use sunbake::progress::{Progress, Silent};
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{Date, DayRequest};
 
@@ -19,47 +19,57 @@ const DEFAULT_DATE: [i32; 3] = [2026, 6, 21];
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let settings = settings(args)?;
-    let terminal = TerminalProgress::new(args.output_manners.quiet);
-    let progress: &dyn Progress = terminal.as_ref().map_or(&Silent, |t| t as &dyn Progress);
-    if args.explain {
-        return explain(args, &settings, progress);
-    }
-    let report = sunbake::bake(&args.scene, &args.output, args.force, &settings, progress)?;
-    drop(terminal);
-    if !args.output_manners.quiet {
-        for warning in &report.warnings {
-            eprintln!("warning: {warning}");
-        }
-    }
-    if args.output_manners.json {
-        print_json(&report.manifest)?;
-    } else if !args.output_manners.quiet {
-        println!("{} -> {}", args.scene.display(), args.output.display());
-        print!("{}", inspect::summary(&report.manifest));
-        if args.output_manners.verbose {
-            print!("{}", stages(&report.manifest.stats.seconds));
-        }
-    }
-    Ok(())
+    let progress = TerminalProgress::new(args.output_manners.quiet);
+    let target = match &args.output {
+        Some(target) if !args.explain => target,
+        _ => return explain(args, &settings, &progress),
+    };
+    let baked = sunbake::bake(&args.scene, target, args.force, &settings, &progress);
+    progress.clear();
+    let report = baked.map_err(|error| Failure::of_bake(error, progress.signal_code()))?;
+    tell(args, target, &report)
 }
 
-fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &dyn Progress) -> Result<(), Failure> {
-    let prepared = sunbake::prepare(&args.scene, settings, progress)?;
-    for warning in &prepared.warnings {
-        eprintln!("warning: {warning}");
+fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failure> {
+    let OutputArgs { json, quiet, verbose } = args.output_manners;
+    let manifest = &report.manifest;
+    if !quiet {
+        warn(&report.warnings);
+    }
+    if json {
+        return print_json(manifest);
+    }
+    if quiet {
+        return Ok(());
+    }
+    let mut text = format!("{} -> {}\n{}", args.scene.display(), target.display(), summary::of(manifest));
+    if verbose {
+        text += &summary::stages(&manifest.stats.seconds);
+        text += &summary::effects(&manifest.effects);
+    }
+    print(&text)
+}
+
+/// Reads the scene and says what a bake of it would do.
+fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &TerminalProgress) -> Result<(), Failure> {
+    let prepared = sunbake::prepare(&args.scene, settings, progress);
+    progress.clear();
+    let prepared = prepared.map_err(|error| Failure::of_bake(error, progress.signal_code()))?;
+    let OutputArgs { json, quiet, .. } = args.output_manners;
+    if !quiet {
+        warn(&prepared.warnings);
     }
     let entries = prepared.plan.entries();
-    match args.output_manners.json {
-        true => print_json(&entries)?,
-        false => print!("{}", inspect::effects(&entries)),
+    match (json, quiet) {
+        (true, _) => print_json(&entries),
+        (false, true) => Ok(()),
+        (false, false) => print(&format!(
+            "{}, not baked\n{}{}",
+            args.scene.display(),
+            summary::request(&prepared, settings),
+            summary::effects(&entries)
+        )),
     }
-    Ok(())
-}
-
-fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::io(e.to_string()))?;
-    println!("{text}");
-    Ok(())
 }
 
 fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
@@ -70,15 +80,11 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         Preset::Final => BakeSettings::last(sun),
     };
     let cost = &args.cost;
-    let bits = match cost.bits {
-        None => preset.bits,
-        Some(count) => Bits::from_count(count).ok_or_else(|| Failure::usage("--bits is 8 or 16, nothing between"))?,
-    };
     Ok(BakeSettings {
         density: cost.texels_per_metre.map_or(preset.density, Density::TexelsPerMetre),
         page_size_texels: cost.size.unwrap_or(preset.page_size_texels),
         padding_texels: cost.padding.unwrap_or(preset.padding_texels),
-        bits,
+        bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         engine: cost.engine.unwrap_or(preset.engine),
         threads: cost.threads,
@@ -91,7 +97,7 @@ fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
     let given = &args.sun;
     if let Some(file) = &given.path {
         let json = std::fs::read_to_string(file)
-            .map_err(|e| Failure::io(format!("cannot read the sun path {}: {e}", file.display())))?;
+            .map_err(|e| Failure::io(format!("cannot read the sun path {}: {e}; check --path", file.display())))?;
         return Ok(SunRequest::Keyed { json, north_deg: given.north });
     }
     let [latitude_deg, longitude_deg] = given.place.unwrap_or(DEFAULT_PLACE_DEG);
@@ -107,16 +113,4 @@ fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
     };
     let names_a_day = given.place.is_some() || given.date.is_some() || given.window.is_some();
     Ok(if names_a_day { SunRequest::Day(request) } else { SunRequest::SceneOr(request) })
-}
-
-fn stages(seconds: &StageSeconds) -> String {
-    let rows = [
-        ("load", seconds.load),
-        ("unwrap", seconds.unwrap),
-        ("bvh", seconds.bvh),
-        ("visibility", seconds.visibility),
-        ("encode", seconds.encode),
-        ("write", seconds.write),
-    ];
-    rows.iter().map(|(name, s)| format!("  {name:<12}{s:8.2} s\n")).collect()
 }

@@ -1,8 +1,11 @@
 //! Exit codes: 0 done, 1 usage, 2 input or output failed, 3 the input is bad, 4 internal, 5 not supported here.
 
+use super::out::tell;
+use clap::error::ErrorKind;
 use std::error::Error;
 use std::process::ExitCode;
 use sunbake::BakeError;
+use sunbake::atlas::AtlasError;
 use sunbake::disk::read::ReadError;
 use sunbake::scene::ErrorClass;
 
@@ -27,6 +30,15 @@ impl Failure {
     }
 }
 
+impl Failure {
+    /// A bake that failed. One that a signal stopped exits as shells expect it.
+    pub fn of_bake(error: BakeError, signal_code: Option<u8>) -> Self {
+        let code = signal_code.filter(|_| matches!(error, BakeError::Cancelled));
+        let failure = Self::from(error);
+        Self { code: code.unwrap_or(failure.code), ..failure }
+    }
+}
+
 impl From<BakeError> for Failure {
     fn from(error: BakeError) -> Self {
         let code = match &error {
@@ -35,7 +47,8 @@ impl From<BakeError> for Failure {
                 ErrorClass::BadInput | ErrorClass::Unsupported => 3,
             },
             BakeError::Write(_) | BakeError::TooLarge(_) => 2,
-            BakeError::Day(_) => 1,
+            BakeError::Day(_) | BakeError::Atlas(AtlasError::BadSetting { .. }) => 1,
+            BakeError::Cancelled => 130,
             BakeError::Keyed(_) | BakeError::Light(_) | BakeError::Atlas(_) | BakeError::Memory { .. } => 3,
             BakeError::Threads { .. } => 5,
         };
@@ -53,10 +66,19 @@ impl From<ReadError> for Failure {
     }
 }
 
-/// Prints what clap has to say. Help and version are no failure.
+/// Prints what clap has to say. Help and version are no failure. A value that makes no sense is told in one line, like
+/// any other failure; only a command line that cannot be understood gets the usage with it.
 pub fn usage(error: &clap::Error) -> ExitCode {
-    // If even this cannot be printed there is nobody to tell.
-    let _ = error.print();
+    match error.kind() {
+        ErrorKind::ValueValidation | ErrorKind::InvalidValue => {
+            let text = error.to_string();
+            let first = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
+            let line: Vec<&str> = first.split_whitespace().collect();
+            tell(&format!("sunbake: {}; `sunbake bake --help` tells more", line.join(" ")));
+        }
+        // If even this cannot be printed there is nobody to tell.
+        _ => drop(error.print()),
+    }
     ExitCode::from(u8::from(error.use_stderr()))
 }
 
@@ -65,11 +87,11 @@ pub fn report(command: impl FnOnce() -> Result<(), Failure> + std::panic::Unwind
     match std::panic::catch_unwind(command) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(failure)) => {
-            eprintln!("sunbake: {}", chain(failure.error.as_ref()));
+            tell(&format!("sunbake: {}", chain(failure.error.as_ref())));
             ExitCode::from(failure.code)
         }
         Err(_) => {
-            eprintln!("sunbake: this is a defect in sunbake: please report it with the message above and the scene");
+            tell("sunbake: this is a defect in sunbake: please report it with the message above and the scene");
             ExitCode::from(4)
         }
     }
@@ -86,5 +108,32 @@ fn chain(error: &dyn Error) -> String {
         }
         source = cause.source();
     }
-    text
+    one_line(&text)
+}
+
+/// What comes from a file may hold line breaks and worse; a terminal gets neither.
+fn one_line(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_end_has_its_exit_code() {
+        let text = |code: ExitCode| format!("{code:?}");
+        assert_eq!(text(report(|| Ok(()))), text(ExitCode::SUCCESS));
+        assert_eq!(text(report(|| Err(Failure::usage("no")))), text(ExitCode::from(1)));
+        assert_eq!(text(report(|| Err(Failure::io("no")))), text(ExitCode::from(2)));
+        assert_eq!(text(report(|| panic!("a defect"))), text(ExitCode::from(4)));
+    }
+
+    #[test]
+    fn a_message_is_one_line_with_every_cause_once() {
+        let disk =
+            sunbake::disk::write::WriteError::Folder { folder: "x".into(), source: std::io::Error::other("a\nb") };
+        assert_eq!(chain(&disk).matches("a b").count(), 1);
+        assert!(!chain(&disk).contains('\n'));
+    }
 }

@@ -4,6 +4,9 @@ mod args;
 mod bake;
 mod exit;
 mod inspect;
+mod out;
+mod signals;
+mod summary;
 mod terminal;
 mod texels;
 
@@ -18,13 +21,13 @@ sunbake bakes when every texel of a glTF scene sees the sun.
   sunbake bake scene.glb -o baked --place 48.2,16.4 --date 2026-06-21
   sunbake inspect baked            what a set holds, what it cost, what it lost
   sunbake texels baked --count 9   some of its texels, to check with your own ray tracer
-  sunbake bake --help              every option";
+  sunbake bake --help              every option
+";
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
     if std::env::args_os().len() < 2 {
-        println!("{BASICS}");
-        return ExitCode::SUCCESS;
+        return exit::report(|| out::print(BASICS));
     }
     let args = match Args::try_parse() {
         Ok(args) => args,

@@ -1,21 +1,30 @@
-//! Progress on a terminal, and nowhere else.
+//! Progress on a terminal, and nowhere else; and the ear that hears Ctrl-C.
 
+use super::signals::Signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
 use sunbake::progress::{Progress, Stage};
 
-/// Draws one line on stderr while a bake runs.
-#[derive(Debug, Default)]
+/// Draws one line on stderr while a bake runs, and stops the bake at a signal.
+#[derive(Debug)]
 pub struct TerminalProgress {
+    draws: bool,
     bar: Mutex<Option<ProgressBar>>,
+    signals: Signals,
 }
 
 impl TerminalProgress {
-    /// One that draws, if stderr is a terminal and `quiet` is not asked for.
-    pub fn new(quiet: bool) -> Option<Self> {
-        (!quiet && std::io::stderr().is_terminal()).then(Self::default)
+    /// One that draws if stderr is a terminal and `quiet` is not asked for.
+    pub fn new(quiet: bool) -> Self {
+        let draws = !quiet && std::io::stderr().is_terminal();
+        Self { draws, bar: Mutex::default(), signals: Signals::listen() }
+    }
+
+    /// What to exit with, if a signal stopped the bake.
+    pub fn signal_code(&self) -> Option<u8> {
+        self.signals.exit_code()
     }
 
     /// Clears the line.
@@ -31,6 +40,9 @@ impl TerminalProgress {
 impl Progress for TerminalProgress {
     fn start(&self, stage: Stage, total: u64) {
         self.clear();
+        if !self.draws {
+            return;
+        }
         let (bar, template) = match total {
             0 => (ProgressBar::new_spinner(), "{spinner} {msg} {elapsed}"),
             total => (ProgressBar::new(total), "{msg} {bar:32} {percent:>3} %  {elapsed}, {eta} to go"),
@@ -51,6 +63,10 @@ impl Progress for TerminalProgress {
         {
             bar.inc(by);
         }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.signal_code().is_some()
     }
 }
 

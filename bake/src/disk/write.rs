@@ -61,17 +61,49 @@ pub enum WriteError {
     },
 }
 
-/// A set being written.
+/// A set being written. Dropped before it is finished, it takes back whatever it made.
 #[derive(Debug)]
 pub struct SetWriter {
     target: PathBuf,
     partial: TempDir,
     bytes: u64,
+    /// After `partial`, which lies in it and has to go first.
+    _parent: MadeFolders,
 }
 
-/// Whether a set may be written at `target`: asked before hours are spent on what could not be kept.
-pub fn check_target(target: &Path, force: bool) -> Result<(), WriteError> {
-    let Ok(metadata) = std::fs::symlink_metadata(target) else { return Ok(()) };
+/// Folders that were made on the way to the target, outermost first. Those that stay empty are removed again.
+#[derive(Debug)]
+struct MadeFolders(Vec<PathBuf>);
+
+impl MadeFolders {
+    fn make(folder: &Path) -> std::io::Result<Self> {
+        let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
+        let mut made = Self(Vec::new());
+        let missing: Vec<&Path> = missing.collect();
+        for folder in missing.into_iter().rev() {
+            match std::fs::create_dir(folder) {
+                Ok(()) => made.0.push(folder.to_owned()),
+                // Another process was faster.
+                Err(_) if folder.is_dir() => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(made)
+    }
+}
+
+impl Drop for MadeFolders {
+    fn drop(&mut self) {
+        for folder in self.0.iter().rev() {
+            // Only empty folders can be removed so: one that holds a set stays.
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
+}
+
+/// Whether a set may be written at `target`.
+fn check_target(target: &Path, force: bool) -> Result<(), WriteError> {
+    let Ok(metadata) = std::fs::metadata(target).or_else(|_| std::fs::symlink_metadata(target)) else { return Ok(()) };
     let is_empty = || std::fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_none());
     if metadata.is_dir() && is_empty() {
         return Ok(());
@@ -89,19 +121,22 @@ impl SetWriter {
     /// Opens a folder beside `target` to write in.
     pub fn begin(target: &Path, force: bool) -> Result<Self, WriteError> {
         check_target(target, force)?;
+        // What is there already is replaced where it really is, be it named `.` or by a link.
+        let target = &target.canonicalize().unwrap_or_else(|_| target.to_owned());
         let folder = match target.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
             _ => PathBuf::from("."),
         };
         let wrong = |source| WriteError::Folder { folder: folder.clone(), source };
-        std::fs::create_dir_all(&folder).map_err(wrong)?;
+        let made = MadeFolders::make(&folder).map_err(wrong)?;
         let name = target.file_name().unwrap_or_default().to_string_lossy();
         let partial = tempfile::Builder::new()
             .prefix(&format!(".{name}."))
             .suffix(PARTIAL_SUFFIX)
             .tempdir_in(&folder)
-            .map_err(wrong)?;
-        Ok(Self { target: target.to_owned(), partial, bytes: 0 })
+            // The kind alone: the whole error names our hidden folder, which means nothing to anyone.
+            .map_err(|error| wrong(error.kind().into()))?;
+        Ok(Self { target: target.to_owned(), partial, bytes: 0, _parent: made })
     }
 
     /// Writes the scene.

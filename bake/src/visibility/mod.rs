@@ -44,25 +44,24 @@ pub struct Work {
 const RUN: usize = 1024;
 
 /// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points.
+/// `on_progress` gets the number of points that were done and returns false to stop; then there is no answer.
 pub fn find_lit(
     engine: &dyn Engine,
     point_count: usize,
     point: impl Fn(usize) -> SurfacePoint + Sync,
-    on_progress: impl Fn(usize) + Sync,
-) -> (Vec<IntervalTable>, Work) {
-    let runs: Vec<(IntervalTable, Work)> = (0..point_count.div_ceil(RUN))
-        .into_par_iter()
-        .map(|run| {
-            let range = run * RUN..point_count.min((run + 1) * RUN);
-            let mut session = engine.session();
-            let mut table = IntervalTable::default();
-            for index in range.clone() {
-                table.push(&session.lit(&point(index)));
-            }
-            on_progress(range.len());
-            (table, session.work())
-        })
-        .collect();
+    on_progress: impl Fn(usize) -> bool + Sync,
+) -> Option<(Vec<IntervalTable>, Work)> {
+    let find_run = |run| {
+        let range = run * RUN..point_count.min((run + 1) * RUN);
+        let mut session = engine.session();
+        let mut table = IntervalTable::default();
+        for index in range.clone() {
+            table.push(&session.lit(&point(index)));
+        }
+        on_progress(range.len()).then(|| (table, session.work()))
+    };
+    let runs: Vec<(IntervalTable, Work)> =
+        (0..point_count.div_ceil(RUN)).into_par_iter().map(find_run).collect::<Option<_>>()?;
     let work = Work { rays: runs.iter().map(|(_, work)| work.rays).sum() };
-    (runs.into_iter().map(|(table, _)| table).collect(), work)
+    Some((runs.into_iter().map(|(table, _)| table).collect(), work))
 }

@@ -1,0 +1,148 @@
+//! A set, or a bake that is still to come, in a few lines: what people read. Programs read the manifest.
+
+use std::fmt::Write;
+use sunbake::Prepared;
+use sunbake::atlas::Density;
+use sunbake::disk::manifest::{AtlasEntry, EffectEntry, LossEntry, Manifest, PathEntry, StageSeconds};
+use sunbake::settings::{BakeSettings, EngineChoice};
+
+/// Lines of a label and a value, in two columns.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn line(&mut self, label: &str, value: impl std::fmt::Display) {
+        // Writing to a string does not fail.
+        let _ = writeln!(self.0, "  {label:<12}{value}");
+    }
+}
+
+/// The set: the day, the texels, the losses, the cost.
+pub fn of(manifest: &Manifest) -> String {
+    let mut lines = Lines::default();
+    lines.line("sun", manifest.path.as_ref().map_or("it does not rise: no times are stored".into(), sun));
+    lines.line("scene", scene(manifest));
+    lines.line("atlas", atlas(manifest));
+    if manifest.path.is_some() {
+        lines.line("times", times(manifest));
+        lines.line("rounding", loss(&manifest.error.quantisation_min));
+        let merged = manifest.error.merged_texels;
+        let merging = || format!("{}; {merged} texels", loss(&manifest.error.merge_min));
+        lines.line("merging", if merged == 0 { "nothing lost".into() } else { merging() });
+        lines.line("engine", engine(manifest));
+    }
+    lines.line("cost", cost(manifest));
+    lines.0
+}
+
+/// What a bake was asked for, before it is baked.
+pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
+    let mut lines = Lines::default();
+    let sun = prepared.path.as_ref().map(|path| match (path.local_text(0.0), path.local_text(1.0)) {
+        (Some(start), Some(end)) => format!("{start} to {end}, {} arc(s)", path.arcs().len()),
+        _ => format!("{} arc(s), {:.0} minutes", path.arcs().len(), path.duration_min),
+    });
+    lines.line("sun", sun.unwrap_or("it does not rise: no times would be stored".into()));
+    let (triangles, instances) = (prepared.scene.triangle_count(), prepared.scene.instances.len());
+    lines.line("scene", format!("{}, {}", count(triangles as u64, "triangle"), count(instances as u64, "instance")));
+    let edge = settings.page_size_texels;
+    let pages = match settings.density {
+        Density::Pages(n) => format!("{} of {edge} x {edge}, as dense as fits", count(n.into(), "page")),
+        Density::TexelsPerMetre(d) => format!("{d} texels/m, on pages of at most {edge} x {edge}"),
+    };
+    lines.line("atlas", pages);
+    let EngineChoice::Rays(rays) = settings.engine;
+    lines.line(
+        "times",
+        format!("{} bits, at most {}", settings.bits.count(), count(settings.layer_cap as u64, "layer")),
+    );
+    lines.line("engine", format!("rays:{rays}"));
+    lines.0
+}
+
+/// The effects, one a line.
+pub fn effects(entries: &[EffectEntry]) -> String {
+    let row = |e: &EffectEntry| format!("  {:<4}{:<20}{}\n", if e.on { "on" } else { "off" }, e.effect, e.why);
+    entries.iter().map(row).collect()
+}
+
+/// The stages with their seconds, one a line.
+pub fn stages(seconds: &StageSeconds) -> String {
+    let row = |(name, s): &(&str, f64)| format!("  {name:<12}{s:8.2} s\n");
+    by_stage(seconds).iter().filter(|(_, s)| *s > 0.0).map(row).collect()
+}
+
+fn by_stage(seconds: &StageSeconds) -> [(&'static str, f64); 7] {
+    let StageSeconds { load, unwrap, bvh, visibility, ambient, encode, write } = *seconds;
+    [
+        ("load", load),
+        ("unwrap", unwrap),
+        ("bvh", bvh),
+        ("visibility", visibility),
+        ("ambient", ambient),
+        ("encode", encode),
+        ("write", write),
+    ]
+}
+
+/// `1 page`, `2 pages`.
+fn count(n: u64, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+fn sun(path: &PathEntry) -> String {
+    let (Some(place), Some([start, end]), Some(offset)) = (&path.place, &path.local, path.utc_offset_h) else {
+        return format!("{}, {:.0} minutes", count(path.arcs.len() as u64, "arc"), path.duration_min);
+    };
+    let error_deg = path.ephemeris_error_deg.unwrap_or(0.0);
+    let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
+    format!(
+        "{start} to {end} (UTC{offset:+}) at {latitude},{longitude}; within {error_deg:.4} degrees of the ephemeris"
+    )
+}
+
+fn scene(manifest: &Manifest) -> String {
+    let stats = &manifest.stats;
+    let mut text = count(stats.triangles, "triangle");
+    if stats.dropped_triangles > 0 {
+        let _ = write!(text, " ({} degenerate left out)", stats.dropped_triangles);
+    }
+    text + ", " + &count(manifest.instances.len() as u64, "instance")
+}
+
+fn atlas(manifest: &Manifest) -> String {
+    let size = |a: &AtlasEntry| format!("{} x {}", a.width, a.height);
+    let pages = match &manifest.atlases[..] {
+        [] => "no page".into(),
+        [page] => format!("1 page of {}", size(page)),
+        [first, ..] => format!("{} pages, the first of {}", manifest.atlases.len(), size(first)),
+    };
+    let (texels, all) = (manifest.stats.texels, manifest.stats.page_texels);
+    let filled = 100.0 * texels as f64 / (all as f64).max(1.0);
+    format!("{pages}, {texels} texels used ({filled:.0} %), {:.3} texels/m", manifest.scene.texels_per_metre)
+}
+
+fn times(manifest: &Manifest) -> String {
+    let stats = &manifest.stats;
+    let layers = manifest.atlases.iter().flat_map(|a| &a.lanes).map(|lane| lane.layers.len()).max().unwrap_or(0);
+    let mean = stats.intervals as f64 / (stats.texels as f64).max(1.0);
+    let layers = count(layers as u64, "layer");
+    format!("{} bits, {layers}; {mean:.2} intervals a texel, {} at most", manifest.bits, stats.most_intervals)
+}
+
+fn loss(loss: &LossEntry) -> String {
+    format!("{:.4} min a texel on average, 99 % under {:.4}, worst {:.4}", loss.mean, loss.p99, loss.worst)
+}
+
+fn engine(manifest: &Manifest) -> String {
+    let stats = &manifest.stats;
+    let millions = stats.rays as f64 / 1e6;
+    let rate = millions / stats.seconds.visibility.max(1e-9);
+    format!("{}, {millions:.1} M rays at {rate:.1} M/s on {}", stats.engine, count(stats.threads as u64, "thread"))
+}
+
+fn cost(manifest: &Manifest) -> String {
+    let total: f64 = by_stage(&manifest.stats.seconds).iter().map(|(_, s)| s).sum();
+    let mib = manifest.stats.bytes as f64 / f64::from(1 << 20);
+    format!("{total:.1} s ({:.1} s of it tracing the sun), {mib:.1} MiB", manifest.stats.seconds.visibility)
+}

@@ -1,0 +1,203 @@
+//! The Khronos validator's 372 test files and every shared scene, at draft: no panic, no hang, at most 4 GiB, and whatever
+//! bakes passes the Khronos validator. A table says what each did.
+
+use super::tools::{SUNBAKE, gas_station};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Longest that a file may take.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Address space that a bake gets, in KiB.
+const MEMORY_KIB: u64 = 4 << 20;
+
+/// What a file came to.
+struct Row {
+    file: String,
+    code: Option<i32>,
+    first_line: String,
+    seconds: f64,
+    peak_mib: u64,
+    set: PathBuf,
+}
+
+impl std::fmt::Display for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let Self { file, code, first_line, seconds, peak_mib, .. } = self;
+        let code = code.map_or("-".into(), |c| c.to_string());
+        let line: String = first_line.chars().take(150).collect();
+        write!(f, "{code:>4} {seconds:>7.2} s {peak_mib:>5} MiB  {file:<72} {line}")
+    }
+}
+
+fn shared(name: &str) -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
+    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join(name);
+    if !folder.is_dir() {
+        eprintln!("not tested: {} is not on this machine (set SUNBAKE_SHARED)", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+/// All .glb and .gltf below a folder, the largest first, so that no long one starts last.
+fn scenes_below(folder: &Path) -> Vec<PathBuf> {
+    let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort_by_key(|path| (std::cmp::Reverse(path.metadata().map_or(0, |m| m.len())), path.clone()));
+    found
+}
+
+fn bake(file: &Path, root: &Path, target: PathBuf) -> Row {
+    let script = format!("ulimit -v {MEMORY_KIB}; exec \"$0\" bake \"$1\" -o \"$2\" --preset draft --threads 1 --json");
+    let stderr = target.with_extension("stderr");
+    let mut command = Command::new("sh");
+    command.args(["-c", &script, SUNBAKE]).arg(file).arg(&target).stdout(Stdio::null());
+    command.stderr(std::fs::File::create(&stderr).expect("a file"));
+    let started = Instant::now();
+    let mut child = command.spawn().expect("the command starts");
+    let mut peak_mib = 0;
+    let status = loop {
+        peak_mib = peak_mib.max(peak_of(&child));
+        if let Some(status) = child.try_wait().expect("a child") {
+            break Some(status);
+        }
+        if started.elapsed() > PATIENCE {
+            child.kill().and_then(|()| child.wait()).expect("it can be ended");
+            break None;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    let text = String::from_utf8_lossy(&std::fs::read(&stderr).expect("stderr")).into_owned();
+    Row {
+        file: file.strip_prefix(root).unwrap_or(file).display().to_string(),
+        code: status.and_then(|s| s.code()),
+        first_line: text.lines().next().unwrap_or_default().to_owned(),
+        seconds: started.elapsed().as_secs_f64(),
+        peak_mib,
+        set: target,
+    }
+}
+
+/// Peak resident memory of a process so far, where the system tells.
+fn peak_of(child: &Child) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|l| l.split_whitespace().next()?.parse::<u64>().ok()).unwrap_or(0) >> 10
+}
+
+/// Bakes files two at a time; rows come in the order of the files' names.
+fn bake_all(files: &[PathBuf], root: &Path, sets: &Path) -> Vec<Row> {
+    let (queue, rows) = (Mutex::new(files.iter().enumerate()), Mutex::new(Vec::new()));
+    let next = || queue.lock().unwrap().next();
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some((index, file)) = next() {
+                    let row = bake(file, root, sets.join(index.to_string()));
+                    rows.lock().unwrap().push(row);
+                }
+            });
+        }
+    });
+    let mut rows = rows.into_inner().unwrap();
+    rows.sort_by(|a, b| a.file.cmp(&b.file));
+    rows
+}
+
+/// Prints the table, and checks what must hold of every row. Gives how many rows have which exit code.
+fn check(rows: &[Row]) -> BTreeMap<i32, usize> {
+    rows.iter().for_each(|row| println!("{row}"));
+    let mut counts = BTreeMap::new();
+    for row in rows {
+        let code = row.code.unwrap_or_else(|| panic!("neither in time nor in memory: {row}"));
+        *counts.entry(code).or_default() += 1;
+        match code {
+            0 => assert!(row.first_line.is_empty() || row.first_line.starts_with("warning: "), "{row}"),
+            2 | 3 => assert!(row.first_line.starts_with("sunbake: "), "{row}"),
+            _ => panic!("a panic or worse: {row}"),
+        }
+        assert_eq!(row.set.exists(), code == 0, "{row}");
+    }
+    println!("exit codes: {counts:?}");
+    counts
+}
+
+/// Every scene.glb that was written has no errors for the Khronos validator. Its warnings are printed.
+fn validate(rows: &[Row]) {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let installed = workspace.join("target/gltf-validator");
+    assert!(
+        installed.join("node_modules/gltf-validator").is_dir(),
+        "gltf-validator is not installed in target/: run the tests by tests/run, which sets it up"
+    );
+    let baked: Vec<&Row> = rows.iter().filter(|row| row.code == Some(0)).collect();
+    let mut command = Command::new("node");
+    command.arg(workspace.join("tests/validate.mjs")).arg(installed);
+    command.args(baked.iter().map(|row| row.set.join("scene.glb")));
+    let output = command.output().expect("node is missing: install it, and run the tests by tests/run");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let reports: Vec<serde_json::Value> =
+        String::from_utf8(output.stdout).unwrap().lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    assert_eq!(reports.len(), baked.len());
+    let mut failed = Vec::new();
+    for (row, report) in baked.iter().zip(&reports) {
+        if report["warnings"] != 0 || report["errors"] != 0 {
+            println!("{}: {report}", row.file);
+        }
+        if report["errors"] != 0 {
+            failed.push(&row.file);
+        }
+    }
+    assert!(failed.is_empty(), "scene.glb has errors: {failed:?}");
+    println!("{} of scene.glb pass the Khronos validator", reports.len());
+}
+
+#[test]
+fn the_khronos_test_files() {
+    let Some(folder) = shared("corpora/gltf_validator_test") else { return };
+    let files = scenes_below(&folder);
+    assert_eq!(files.len(), 372);
+    let sets = tempfile::tempdir().unwrap();
+    let rows = bake_all(&files, &folder, sets.path());
+    let counts = check(&rows);
+    validate(&rows);
+    assert_eq!(counts, BTreeMap::from(KHRONOS_COUNTS));
+}
+
+/// Exit codes of the Khronos test files: most hold no mesh at all.
+const KHRONOS_COUNTS: [(i32, usize); 2] = [(0, 0), (3, 372)];
+
+#[test]
+fn the_shared_scenes() {
+    let Some(folder) = shared("scenes") else { return };
+    let sets = tempfile::tempdir().unwrap();
+    let rows = bake_all(&scenes_below(&folder), &folder, sets.path());
+    let counts = check(&rows);
+    validate(&rows);
+    let refused: Vec<_> = rows.iter().filter(|row| row.code != Some(0)).map(|row| row.file.as_str()).collect();
+    assert_eq!(
+        refused,
+        ["truck_town/original/town_model.gltf", "two_cylinder_engine/2CylinderEngine.gltf"],
+        "{counts:?}"
+    );
+}
+
+#[test]
+fn our_own_scene() {
+    let file = gas_station();
+    let sets = tempfile::tempdir().unwrap();
+    let rows = bake_all(std::slice::from_ref(&file), file.parent().unwrap(), sets.path());
+    assert_eq!(check(&rows), BTreeMap::from([(0, 1)]));
+    validate(&rows);
+}

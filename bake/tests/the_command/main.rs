@@ -1,0 +1,11 @@
+//! The `sunbake` command as its users meet it: a process with arguments, two streams and an exit code.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+mod tools;
+
+mod a_bake_that_stops_leaves_the_old_set_or_none;
+mod any_day_at_any_place_bakes;
+#[cfg(unix)]
+mod every_file_at_hand_ends_well;
+mod it_minds_its_manners;
+mod what_is_wrong_is_said_in_one_line;
