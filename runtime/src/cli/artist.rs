@@ -6,6 +6,9 @@ use sunbake_runtime::gpu::{Gpu, GpuError};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
 use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage, View};
 
+/// Most samples of a picture: one of 16384 by 16384.
+const MOST_SAMPLES: u64 = 1 << 28;
+
 /// Opens the GPU if the technique wants one. None: the CPU draws.
 pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
     let wants_gpu = look.technique == TechniqueChoice::Baked && look.renderer != RendererChoice::Cpu;
@@ -46,6 +49,11 @@ pub fn technique<'a>(
 /// The view that was asked for, with all its samples.
 pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
     let size = look.size.map(|edge| edge * look.supersample);
+    let samples = u64::from(size[0]) * u64::from(size[1]);
+    if samples > MOST_SAMPLES {
+        let text = format!("a picture of {samples} samples is too large: give a smaller --size or --supersample");
+        return Err(Failure::usage(text));
+    }
     let camera = look.camera.on(stage, f64::from(size[0]) / f64::from(size[1]))?;
     Ok(View::new(&camera, size, &stage.scene))
 }

@@ -124,3 +124,35 @@ pub fn write_animation(path: &Path, pictures: &[Raster<[u8; 3]>], delay_ms: u16)
     };
     write().map_err(|e| cannot_write(path, &e))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn visibility_survives_both_kinds_of_file() {
+        let folder = std::env::temp_dir().join(format!("sunplay-files-{}", std::process::id()));
+        make_folder(&folder).unwrap();
+        let seen = Raster { size: [3, 2], pixels: vec![0.0, 0.25, 1.0, 0.5, 0.125, 0.75] };
+        let [exr, png] = ["v.exr", "v.png"].map(|name| folder.join(name));
+        write_visibility(&exr, &seen, 1).unwrap();
+        write_visibility(&png, &seen, 1).unwrap();
+        let image = exr::prelude::read_first_flat_layer_from_file(&exr).unwrap();
+        let channel = &image.layer_data.channel_data.list[0];
+        assert_eq!(channel.name.to_string(), "Y");
+        assert_eq!(channel.sample_data.values_as_f32().collect::<Vec<_>>(), seen.pixels);
+        let mut reader =
+            png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&png).unwrap())).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+        let codes: Vec<u16> = bytes.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect();
+        assert_eq!(codes, [0, 16_384, 65_535, 32_768, 8192, 49_151]);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn other_endings_are_refused() {
+        assert_eq!((kind(Path::new("a.PNG")).unwrap(), kind(Path::new("a.exr")).unwrap()), (Kind::Png, Kind::Exr));
+        assert!(["a.jpg", "a", ".png/"].iter().all(|name| kind(Path::new(name)).is_err_and(|e| e.code == 1)));
+    }
+}
