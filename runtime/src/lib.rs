@@ -1,1 +1,34 @@
-//! x
+//! Plays sunbake maps back, beside a ray-traced truth.
+//!
+//! A [`Stage`] is a baked set with its scene, ready to be looked at. A [`Shot`] is the stage through a camera, a
+//! [`Moment`] is where the sun stands and what light that makes. A [`technique::Technique`] answers, for a shot at a
+//! moment, how much of the sun each pixel's surface sees; all answer with the same kind of image, so all are compared
+//! alike. The modules read in that order:
+//!
+//! ```text
+//! stage -> camera -> light -> technique (baked on the GPU | on the CPU | truth) -> shade -> image
+//!                                          gpu   playback                          compare
+//! ```
+
+pub mod camera;
+pub mod compare;
+pub mod gpu;
+pub mod image;
+pub mod light;
+pub mod playback;
+pub mod shade;
+pub mod sheet;
+pub mod shot;
+pub mod sides;
+pub mod stage;
+pub mod technique;
+#[doc(hidden)]
+pub mod testing;
+pub mod texture;
+
+pub use camera::{Camera, View};
+pub use image::Raster;
+pub use light::Moment;
+pub use shot::Shot;
+pub use stage::Stage;
+pub use sunbake_shaders::Filter;

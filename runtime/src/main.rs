@@ -1,2 +1,7 @@
-//! x
-fn main() {}
+//! `sunplay`: plays baked sets back.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

@@ -56,6 +56,12 @@ struct Piece {
     part: Part,
 }
 
+/// Pieces that must share a page.
+struct Unit {
+    pieces: Vec<Piece>,
+    texels: f64,
+}
+
 #[derive(Clone, Copy)]
 enum Part {
     /// A chart of a mesh that is packed loose.
@@ -121,7 +127,7 @@ impl Arrangement<'_> {
     /// Places everything on the smallest page, or as few pages as it takes, up to `most`.
     pub fn compactly(&self, texels_per_metre: f64, most: u32) -> Option<Plan> {
         let (_, units) = self.units(texels_per_metre);
-        let area: f64 = units.iter().map(|u| u.1).sum();
+        let area: f64 = units.iter().map(|u| u.texels).sum();
         let mut side = (area.sqrt() * 1.02).ceil().max(16.0);
         while side < f64::from(self.page_size_texels) {
             if let Some(plan) = self.place(texels_per_metre, 1, (side as u32).next_multiple_of(4)) {
@@ -156,12 +162,12 @@ impl Arrangement<'_> {
     }
 
     /// Tiles, and what must stay together on a page, with its area in texels.
-    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<(Vec<Piece>, f64)>) {
+    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<Unit>) {
         let of_item = |(index, item): (usize, &Item)| self.units_of_item(index, item, texels_per_metre * item.share);
         let (tiles, units): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
-        let measured = |unit: Vec<Piece>| {
-            let texels = unit.iter().map(|p| p.shape.area()).sum();
-            (unit, texels)
+        let measured = |pieces: Vec<Piece>| {
+            let texels = pieces.iter().map(|p| p.shape.area()).sum();
+            Unit { pieces, texels }
         };
         (tiles, units.into_iter().flatten().map(measured).collect())
     }
@@ -203,11 +209,11 @@ impl Arrangement<'_> {
 }
 
 /// Deals units to pages, largest first, each to the page with most room. Empty pages are left out.
-fn deal(mut units: Vec<(Vec<Piece>, f64)>, pages: u32) -> Vec<Vec<Piece>> {
-    units.sort_by(|a, b| b.1.total_cmp(&a.1));
+fn deal(mut units: Vec<Unit>, pages: u32) -> Vec<Vec<Piece>> {
+    units.sort_by(|a, b| b.texels.total_cmp(&a.texels));
     let mut filled = vec![0.0f64; pages.max(1) as usize];
     let mut dealt = vec![Vec::new(); filled.len()];
-    for (pieces, texels) in units {
+    for Unit { pieces, texels } in units {
         let emptiest = (0..filled.len()).min_by(|&a, &b| filled[a].total_cmp(&filled[b])).unwrap_or(0);
         filled[emptiest] += texels;
         dealt[emptiest].extend(pieces);

@@ -5,7 +5,8 @@
 //! filters and smaller mip levels.
 //!
 //! Practice: rings grow outwards, all charts at once, and a texel takes over the source of whichever neighbour's source is
-//! nearest to it; ties go to the lowest sample. Charts of one atlas lie at least twice the padding apart, so within the
+//! nearest to it; ties go to the lowest sample. In the first two rings that is the nearest of all, further out it may be a
+//! fraction of a texel farther. Charts of one atlas lie at least twice the padding apart, so within the
 //! padding the nearest source is always the own chart's. Based on: the same ring-by-ring growth as jump flooding with a
 //! step of one (Rong and Tan, "Jump Flooding in GPU with Applications to Voronoi Diagram and Distance Transform", 2006).
 
@@ -100,10 +101,12 @@ mod tests {
                     (dx.max(dy), dx * dx + dy * dy)
                 });
                 let rings = distances.clone().map(|d| d.0).min().unwrap();
-                let nearest = distances.map(|d| d.1).enumerate().min_by_key(|&(i, d)| (d, i)).unwrap().0;
+                let squared: Vec<u32> = distances.map(|d| d.1).collect();
                 let entry = plan.iter().find(|g| g.texel == texel);
                 assert_eq!(entry.is_some(), rings >= 1 && rings <= reach, "({x}, {y}) at reach {reach}");
-                assert!(entry.is_none_or(|g| g.sample as usize == nearest), "({x}, {y}) at reach {reach}");
+                let nearest = f64::from(*squared.iter().min().unwrap()).sqrt();
+                let taken = entry.map_or(nearest, |g| f64::from(squared[g.sample as usize]).sqrt());
+                assert!(taken - nearest < 0.3 && (taken == nearest || reach > 2), "({x}, {y}) at reach {reach}");
             }
         }
     }

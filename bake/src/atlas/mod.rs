@@ -13,11 +13,16 @@ mod coverage;
 mod existing;
 mod gaps;
 mod gutter;
+mod measure;
 mod of_set;
 mod outline;
 mod overlap;
 mod samples;
+mod search;
+mod shared;
 mod strip;
+#[cfg(test)]
+mod tests;
 mod tile;
 mod unwrap;
 

@@ -76,7 +76,7 @@ mod tests {
 
     /// A triangle that takes the lower left half of a box of 6 by 3 texels.
     fn wedge(padding: u32) -> Outline {
-        let corners = [DVec2::ZERO, DVec2::new(6.0, 0.0), DVec2::new(0.0, 3.0)];
+        let corners = [DVec2::ZERO, DVec2::new(5.8, 0.0), DVec2::new(0.0, 2.9)];
         Outline::new(std::iter::once(corners), (6, 3), padding)
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Theory: a texel should speak for the surface that falls within it. Where its centre lies on a triangle that is the
 //! point. A texel on a chart's border may be touched by triangles and yet have its centre off them; so may every texel of
-//! a chart thinner than a texel. It then takes the point nearest its centre on the nearest triangle that touches it.
+//! a chart thinner than a texel. It then takes the nearest triangle that touches it, and of the part that this has in the
+//! texel the point nearest the centre.
 //!
 //! Practice: each page is cut into bands of rows, each band holds the best triangle so far of each texel, and triangles
 //! come in the order of their index, so that ties go to the lowest and the answer does not depend on threads.
@@ -13,7 +14,7 @@
 //! * A triangle whose texture coordinates have no area takes only texels that no other triangle touches, and is sampled
 //!   at its middle.
 
-use super::coverage::{self, Corners};
+use super::coverage::{self, Corners, HAIR_TEXELS};
 use super::overlap::clip;
 use super::{Atlas, PageSamples, PageSize, Sample, SurfacePoint};
 use crate::scene::{Geometry, Scene};
@@ -46,10 +47,6 @@ impl Patch {
         self.area2.abs() > NO_AREA_TEXELS
     }
 
-    fn centroid(&self) -> DVec2 {
-        (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
-    }
-
     /// Distance of `p` from the three lines through the edges, positive inside.
     fn heights(&self, p: DVec2) -> [f64; 3] {
         [0, 1, 2].map(|k| {
@@ -66,30 +63,13 @@ impl Patch {
             })
     }
 
-    /// The nearest point to `p`, which lies outside.
-    fn nearest(&self, p: DVec2) -> DVec2 {
-        let on_edges = [0, 1, 2].map(|k| {
-            let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
-            let along = (p - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
-            a + (b - a) * along.clamp(0.0, 1.0)
-        });
-        let [a, b, c] = on_edges.map(|q| q.distance_squared(p));
-        if a <= b && a <= c {
-            on_edges[0]
-        } else if b <= c {
-            on_edges[1]
-        } else {
-            on_edges[2]
-        }
-    }
-
     /// What a texel ranks candidates by: less is better, zero where its centre is inside.
     fn rank(&self, centre: DVec2) -> f64 {
         if self.contains(centre) {
             0.0
         } else {
             let penalty = if self.has_area() { 0.0 } else { NO_AREA_PENALTY };
-            penalty + self.nearest(centre).distance_squared(centre)
+            penalty + nearest_on(&self.corners, centre).distance_squared(centre)
         }
     }
 
@@ -191,28 +171,38 @@ fn texel_centre(x: u32, y: u32) -> DVec2 {
 fn sample_texel(patch: &Patch, texel: u32, size: PageSize) -> Sample {
     let (x, y) = (texel % size.width, texel / size.width);
     let centre = texel_centre(x, y);
-    let (point, pull) = if !patch.contains(centre) {
-        (patch.nearest(centre), PULL_OFF_CENTRE)
+    let point = if !patch.contains(centre) {
+        let part = part_in_texel(patch, x, y);
+        nearest_on(&part, centre).lerp(middle(&part), PULL_OFF_CENTRE)
     } else if patch.heights(centre).iter().any(|&height| height < BORDER_TEXELS) {
-        (centre, PULL_CENTRE)
+        centre.lerp(middle(&part_in_texel(patch, x, y)), PULL_CENTRE)
     } else {
-        (centre, 0.0)
+        centre
     };
-    let point = if pull > 0.0 { point.lerp(middle_in_texel(patch, x, y), pull) } else { point };
     Sample { texel, triangle: patch.triangle, barycentric: patch.barycentric(point) }
 }
 
-/// The middle of the triangle's part within a texel; of the whole triangle where they hardly touch.
-fn middle_in_texel(patch: &Patch, x: u32, y: u32) -> DVec2 {
-    let low = DVec2::new(f64::from(x), f64::from(y));
-    let mut part = patch.corners.to_vec();
-    for (normal, offset) in
-        [(DVec2::X, low.x), (DVec2::Y, low.y), (DVec2::NEG_X, -low.x - 1.0), (DVec2::NEG_Y, -low.y - 1.0)]
-    {
-        part = clip(&part, normal, offset);
-    }
-    if part.is_empty() {
-        return patch.centroid();
-    }
-    part.iter().sum::<DVec2>() / part.len() as f64
+/// The triangle's part within a texel, which is taken with the hair by which triangles may miss it; the whole triangle
+/// should rounding leave nothing.
+fn part_in_texel(patch: &Patch, x: u32, y: u32) -> Vec<DVec2> {
+    let low = DVec2::new(f64::from(x), f64::from(y)) - 2.0 * HAIR_TEXELS;
+    let high = low + 1.0 + 4.0 * HAIR_TEXELS;
+    let sides = [(DVec2::X, low.x), (DVec2::Y, low.y), (DVec2::NEG_X, -high.x), (DVec2::NEG_Y, -high.y)];
+    let part = sides.iter().fold(patch.corners.to_vec(), |part, &(normal, offset)| clip(&part, normal, offset));
+    if part.is_empty() { patch.corners.to_vec() } else { part }
+}
+
+fn middle(polygon: &[DVec2]) -> DVec2 {
+    polygon.iter().sum::<DVec2>() / polygon.len() as f64
+}
+
+/// The point of a polygon's border that is nearest to `p`; the first of equals.
+fn nearest_on(polygon: &[DVec2], p: DVec2) -> DVec2 {
+    let on_edge = |k: usize| {
+        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        let along = (p - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);
+        a + (b - a) * along.clamp(0.0, 1.0)
+    };
+    let nearer = |best: DVec2, q: DVec2| if q.distance_squared(p) < best.distance_squared(p) { q } else { best };
+    (0..polygon.len()).map(on_edge).reduce(nearer).unwrap_or(p)
 }

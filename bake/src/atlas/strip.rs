@@ -71,7 +71,8 @@ struct Turned {
 
 impl Turned {
     fn new(shape: &Shape, turns: u8) -> Self {
-        let (width, height) = if turns % 2 == 0 { (shape.width, shape.height) } else { (shape.height, shape.width) };
+        let (width, height) =
+            if turns.is_multiple_of(2) { (shape.width, shape.height) } else { (shape.height, shape.width) };
         Self { width, height, columns: shape.outline.as_ref().map(|outline| outline.columns(turns)) }
     }
 

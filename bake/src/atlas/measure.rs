@@ -1,0 +1,70 @@
+//! What an atlas came to: texels, and what to tell the user.
+
+use super::arrange::{Form, Item};
+use super::existing::{self, CROWDED_SHARE};
+use super::{Atlas, AtlasSettings, Density};
+use crate::scene::Scene;
+use rayon::prelude::*;
+
+/// Area of all triangles on all pages.
+pub(super) fn covered_texels(scene: &Scene, atlas: &Atlas) -> f64 {
+    (0..scene.instances.len())
+        .into_par_iter()
+        .map(|i| texels_of_instance(scene, atlas, i))
+        .collect::<Vec<_>>()
+        .iter()
+        .sum()
+}
+
+fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
+    let placement = &atlas.placements[instance];
+    if placement.is_empty() {
+        return 0.0;
+    }
+    let layout = &atlas.layouts[scene.instances[instance].mesh];
+    let triangles = layout.indices.chunks_exact(3).map(|t| {
+        let [a, b, c] = [0, 1, 2].map(|k| layout.uvs[t[k] as usize].as_dvec2());
+        (b - a).perp_dot(c - a).abs() * 0.5
+    });
+    let scale = placement.scale.as_dvec2() * atlas.pages[placement.page as usize].as_dvec2();
+    triangles.sum::<f64>() * scale.x * scale.y
+}
+
+/// Says which mesh did not get the density asked for.
+pub(super) fn fit_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item], atlas: &Atlas) -> Option<String> {
+    let Density::TexelsPerMetre(asked) = settings.density else { return None };
+    let reached = |item: &Item| {
+        let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.0)).sum();
+        (texels / item.area_m2()).sqrt()
+    };
+    let short: Vec<_> = items.iter().map(|i| (reached(i), i)).filter(|(d, _)| *d < 0.9 * asked).collect();
+    let (least, item) = short.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mesh = &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let (count, side) = (short.len(), settings.page_size_texels);
+    let name = mesh.name.as_deref().unwrap_or("without a name");
+    Some(format!(
+        "{count} meshes do not fit a page of {side} texels at {asked} texels a metre; mesh {name} gets {least:.3}: use larger pages"
+    ))
+}
+
+/// Items with a layout of the file's whose islands lie too close together at the size they got.
+pub(super) fn crowded_items(scene: &Scene, items: &[Item], atlas: &Atlas) -> Vec<usize> {
+    let is_crowded = |item: &Item| {
+        let smallest = item.instances.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        let Some(&(instance, _)) = smallest.filter(|_| matches!(item.form, Form::Given(_))) else { return false };
+        let size = atlas.pages[atlas.placements[instance].page as usize];
+        let mesh = &scene.meshes[scene.instances[instance].mesh];
+        existing::crowded_share(&[mesh], size, |uv| atlas.texel(instance, uv.as_vec2(), size)) > CROWDED_SHARE
+    };
+    (0..items.len()).filter(|&i| is_crowded(&items[i])).collect()
+}
+
+/// Says how many meshes brought a `TEXCOORD_1` that could not be used.
+pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item]) -> Option<String> {
+    let mesh = |item: &Item| &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let is_refused = |item: &&Item| matches!(item.form, Form::Charts(_)) && mesh(item).texcoords[1].is_some();
+    let count = items.iter().filter(is_refused).count();
+    (settings.keeps_existing && count > 0).then(|| {
+        format!("TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or is crowded: they were unwrapped anew")
+    })
+}

@@ -1,0 +1,117 @@
+//! Finding the density.
+//!
+//! Practice: pages are given and the density sought by bisection, or the density is given and pages are added. Every guess
+//! packs anew; see [`super::strip`] for why that can be afforded.
+
+use super::arrange::{Arrangement, Item, Plan};
+use super::build::{AtlasError, Meter, UNWRAP_SHARE};
+use super::{AtlasSettings, Density};
+
+/// How near to the best density the search comes.
+const DENSITY_TOLERANCE: f64 = 1.004;
+/// Most pages an atlas may have.
+pub(super) const MOST_PAGES: u32 = 256;
+/// Least share of the asked density that a mesh too large for a page may get.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// Finds the density, and places everything at it.
+pub(super) fn find_plan(
+    settings: &AtlasSettings,
+    items: &mut [Item],
+    warnings: &mut Vec<String>,
+    meter: &Meter,
+) -> Result<Plan, AtlasError> {
+    match settings.density {
+        Density::TexelsPerMetre(density) => plan_at_density(settings, density, items, meter),
+        Density::Pages(pages) => plan_for_pages(settings, pages, items, warnings, meter),
+    }
+}
+
+fn plan_at_density(
+    settings: &AtlasSettings,
+    density: f64,
+    items: &mut [Item],
+    meter: &Meter,
+) -> Result<Plan, AtlasError> {
+    let texels = (items.iter().map(Item::area_m2).sum::<f64>() * density * density) as u64;
+    if texels > settings.most_texels {
+        return Err(AtlasError::TooDense { density_per_metre: density, texels, most: settings.most_texels });
+    }
+    let mut shares = vec![1.0; items.len()];
+    for (index, share) in shares.iter_mut().enumerate() {
+        let arrangement = arrangement(settings, items);
+        while !arrangement.fits_alone(index, density * *share) {
+            *share *= 0.94;
+            if *share < LEAST_SHARE || !meter.reach(UNWRAP_SHARE) {
+                return Err(stopped_or_too_small(settings, items, meter));
+            }
+        }
+    }
+    items.iter_mut().zip(shares).for_each(|(item, share)| item.share = share);
+    let plan = arrangement(settings, items).compactly(density, MOST_PAGES);
+    plan.ok_or_else(|| stopped_or_too_small(settings, items, meter))
+}
+
+fn plan_for_pages(
+    settings: &AtlasSettings,
+    pages: u32,
+    items: &[Item],
+    warnings: &mut Vec<String>,
+    meter: &Meter,
+) -> Result<Plan, AtlasError> {
+    let mut count = pages;
+    loop {
+        if let Some(plan) = densest(settings, count, items, meter) {
+            if count > pages {
+                warnings.push(format!("too many charts for the {pages} pages asked for: there are {count}"));
+            }
+            return Ok(plan);
+        }
+        count *= 2;
+        if count > MOST_PAGES || !meter.reach(UNWRAP_SHARE) {
+            return Err(stopped_or_too_small(settings, items, meter));
+        }
+    }
+}
+
+/// The plan of highest density on this many pages. None if they fit at no density worth having.
+fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) -> Option<Plan> {
+    let arrangement = arrangement(settings, items);
+    let page = f64::from(settings.page_size_texels);
+    let area_m2: f64 = items.iter().map(Item::area_m2).sum();
+    let full = if area_m2 > 0.0 { (f64::from(pages) * page * page / area_m2).sqrt() } else { 1.0 };
+    let mut high = full;
+    let mut low = full * 0.75;
+    let mut best = loop {
+        if let Some(plan) = arrangement.at_density(low, pages) {
+            break plan;
+        }
+        high = low;
+        low *= 0.75;
+        if low < full * 0.05 || !meter.reach(UNWRAP_SHARE) {
+            return None;
+        }
+    };
+    let mut step = 0;
+    while high > low * DENSITY_TOLERANCE && meter.reach(1.0 - (1.0 - UNWRAP_SHARE) * 0.8f64.powi(step)) {
+        let middle = (low * high).sqrt();
+        match arrangement.at_density(middle, pages) {
+            Some(plan) => (low, best) = (middle, plan),
+            None => high = middle,
+        }
+        step += 1;
+    }
+    meter.reach(UNWRAP_SHARE).then_some(best)
+}
+
+fn arrangement<'a>(settings: &AtlasSettings, items: &'a [Item]) -> Arrangement<'a> {
+    Arrangement { items, page_size_texels: settings.page_size_texels, padding_texels: settings.padding_texels }
+}
+
+fn stopped_or_too_small(settings: &AtlasSettings, items: &[Item], meter: &Meter) -> AtlasError {
+    if !meter.reach(0.0) {
+        return AtlasError::Cancelled;
+    }
+    let charts = items.iter().map(Item::chart_count).sum();
+    AtlasError::PageTooSmall { charts, padding: settings.padding_texels, page_size: settings.page_size_texels }
+}

@@ -1,0 +1,49 @@
+//! The whole scene in one square of the file's own: coordinates that were made for light maps, used as they are.
+
+use super::build::file_layout;
+use super::existing::{self, CROWDED_SHARE};
+use super::{Atlas, AtlasSettings, Density, Layout, PageSize, Placement};
+use crate::scene::Scene;
+use glam::Vec2;
+use rayon::prelude::*;
+
+/// The atlas, if all meshes were laid out for light maps in one [0, 1] and that has room enough at this page size.
+pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Vec<(usize, f64)>]) -> Option<Atlas> {
+    let meshes: Vec<usize> = (0..drawn.len()).filter(|&m| !drawn[m].is_empty()).collect();
+    if !settings.keeps_existing || meshes.is_empty() || meshes.iter().any(|&m| drawn[m].len() > 1) {
+        return None;
+    }
+    let given: Vec<_> = meshes.par_iter().map(|&m| existing::judge(&scene.meshes[m]).ok()).collect::<Option<_>>()?;
+    if !existing::share_one_square(scene, &meshes) {
+        return None;
+    }
+    let (metres2, uv2) = meshes.iter().zip(&given).fold((0.0, 0.0), |(metres2, uv2), (&m, g)| {
+        (metres2 + (g.object_per_uv * drawn[m][0].1).powi(2) * g.uv_area, uv2 + g.uv_area)
+    });
+    let side = match settings.density {
+        Density::Pages(_) => settings.page_size_texels,
+        Density::TexelsPerMetre(d) => {
+            (d * (metres2 / uv2).sqrt()).ceil().clamp(16.0, f64::from(settings.page_size_texels)) as u32
+        }
+    };
+    let size = PageSize { width: side, height: side };
+    let all: Vec<_> = meshes.iter().map(|&m| &scene.meshes[m]).collect();
+    if existing::crowded_share(&all, size, |uv| uv * size.as_dvec2()) > CROWDED_SHARE {
+        return None;
+    }
+    let whole = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
+    let mut placements = vec![Placement::EMPTY; scene.instances.len()];
+    drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole);
+    let layout = |m: usize| if drawn[m].is_empty() { Layout::empty(scene, m) } else { file_layout(scene, m) };
+    let texels_per_metre = f64::from(side) * (uv2 / metres2).sqrt();
+    let layouts = (0..scene.meshes.len()).map(layout).collect();
+    let warnings = density_warning(settings, texels_per_metre).into_iter().collect();
+    Some(Atlas { pages: vec![size], layouts, placements, texels_per_metre, chart_count: meshes.len(), warnings })
+}
+
+fn density_warning(settings: &AtlasSettings, reached: f64) -> Option<String> {
+    let Density::TexelsPerMetre(asked) = settings.density else { return None };
+    (reached < 0.99 * asked).then(|| {
+        format!("TEXCOORD_1 fills one page, so the density is {reached:.3} texels a metre instead of {asked}: use larger pages")
+    })
+}

@@ -1,0 +1,154 @@
+//! The hard cases of baking that the atlas decides: B3, B4, B7, B9, B11, B12, B16.
+
+use super::check::{Baked, bake, bake_and_check};
+use super::scenes::{cuboid, hills, lit_quad, mesh, once, scene, sphere, triangles};
+use crate::atlas::{AtlasSettings, Density, LayoutOrigin, surface_point};
+use crate::scene::{Mesh, Scene};
+use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
+
+fn settings(page_size_texels: u32) -> AtlasSettings {
+    AtlasSettings { density: Density::Pages(1), page_size_texels, ..AtlasSettings::default() }
+}
+
+fn covered(baked: &Baked) -> usize {
+    baked.pages.iter().map(|p| p.samples.len()).sum()
+}
+
+fn moved(mut mesh: Mesh, scale: f32, by: Vec3) -> Mesh {
+    mesh.positions.iter_mut().for_each(|p| *p = *p * scale + by);
+    mesh
+}
+
+#[test]
+fn b3_vertices_in_map_coordinates_unwrap_like_those_at_the_origin() {
+    let far = Vec3::new(450_000.0, 0.0, 5_000_000.0);
+    let near = bake_and_check(&scene(vec![(cuboid(Vec3::splat(16.0)), once())]), &settings(256));
+    let away = bake_and_check(&scene(vec![(moved(cuboid(Vec3::splat(16.0)), 1.0, far), once())]), &settings(256));
+    assert_eq!(near.atlas.chart_count, away.atlas.chart_count);
+    assert_eq!(covered(&near), covered(&away));
+}
+
+#[test]
+fn b4_scale_of_a_node_or_of_vertices_changes_nothing() {
+    let parts = |scale: f32, node: f64| {
+        let matrix = |x: f64| DMat4::from_scale(DVec3::splat(node)) * DMat4::from_translation(DVec3::X * x);
+        let grown = |mesh| moved(mesh, scale, Vec3::ZERO);
+        scene(vec![
+            (grown(hills(20, 0.5)), vec![matrix(0.0)]),
+            (grown(sphere(10)), (0..5).map(|i| matrix(f64::from(i))).collect()),
+            (grown(cuboid(Vec3::new(1.0, 0.001, 2.0))), vec![matrix(0.0)]),
+        ])
+    };
+    let plain = bake_and_check(&parts(1.0, 1.0), &settings(256));
+    for factor in [1e-4, 1e4] {
+        let by_node = bake(&parts(1.0, factor), &settings(256));
+        assert_eq!(
+            format!("{:?}", by_node.atlas.layouts),
+            format!("{:?}", plain.atlas.layouts),
+            "node scaled by {factor}"
+        );
+        assert_eq!(by_node.pages[0].samples, plain.pages[0].samples, "node scaled by {factor}");
+        let by_vertex = bake_and_check(&parts(factor as f32, 1.0), &settings(256));
+        // Vertices times 10,000 are rounded, so a sphere, all ties, may be cut elsewhere.
+        let charts = by_vertex.atlas.chart_count.abs_diff(plain.atlas.chart_count);
+        assert!(charts <= 2, "{charts} charts more or less, vertices scaled by {factor}");
+        let ratio = by_vertex.atlas.texels_per_metre * factor / plain.atlas.texels_per_metre;
+        assert!((ratio - 1.0).abs() < 0.03, "density is off by {ratio}, vertices scaled by {factor}");
+    }
+}
+
+#[test]
+fn b7_needles_slivers_and_flat_triangles_have_texels_and_do_not_fail() {
+    let needle = |length: f32, width: f32| [Vec3::ZERO, Vec3::X * length, Vec3::new(length, width, 0.0)];
+    let mut all = vec![needle(1e5, 1.0), needle(1.0, 1e-5), needle(1.0, 1e-9), needle(1e-6, 1e-6)];
+    all.push([Vec3::ZERO, Vec3::X, Vec3::X * 2.0]);
+    bake_and_check(&scene(vec![(triangles(&all[..4]), once())]), &settings(128));
+    for only in all {
+        bake(&scene(vec![(triangles(&[only]), once())]), &settings(64));
+    }
+    bake(&scene(vec![(triangles(&[[Vec3::ONE; 3]]), once()), (cuboid(Vec3::ONE), once())]), &settings(64));
+}
+
+#[test]
+fn b7_edges_with_three_triangles_and_turned_over_copies_unwrap() {
+    let corners = [Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::Z, Vec3::NEG_X];
+    let fin = mesh(corners.to_vec(), vec![0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 2, 1, 0, 3, 1, 0, 1, 2]);
+    bake_and_check(&scene(vec![(fin, once())]), &settings(64));
+}
+
+#[test]
+fn b9_charts_thinner_than_a_texel_and_triangles_smaller_than_one_have_values() {
+    let thin = cuboid(Vec3::new(0.001, 40.0, 0.001));
+    let fine = sphere(60);
+    let ground = hills(4, 0.0);
+    let scene =
+        scene(vec![(thin, once()), (moved(fine, 0.1, Vec3::ZERO), once()), (moved(ground, 10.0, Vec3::ZERO), once())]);
+    bake_and_check(&scene, &settings(128));
+}
+
+/// A point of the surface never lies on the border of its triangle, where a neighbour lies as well.
+#[test]
+fn b10_samples_keep_off_the_borders_of_their_triangles() {
+    let baked = bake(&scene(vec![(cuboid(Vec3::new(3.0, 1.0, 2.0)), once()), (hills(9, 0.3), once())]), &settings(256));
+    for sample in &baked.pages[0].samples {
+        let [u, v] = sample.barycentric;
+        assert!(u > 1e-6 && v > 1e-6 && u + v < 1.0 - 1e-6, "{sample:?}");
+    }
+}
+
+#[test]
+fn b11_mirrored_and_sheared_nodes_keep_their_fronts() {
+    let shear = DMat4::from_cols_array_2d(&[[1., 0., 0., 0.], [0.7, 1., 0., 0.], [0., 0.4, 2., 0.], [0., 0., 0., 1.]]);
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 2.0, 0.5)) * DMat4::from_quat(DQuat::from_rotation_x(0.4));
+    let scene = scene(vec![(sphere(8), vec![shear, mirror, mirror * shear])]);
+    let baked = bake_and_check(&scene, &settings(256));
+    for sample in &baked.pages[0].samples {
+        let point = surface_point(&scene, &baked.geometry, sample);
+        assert!(point.normal.dot(point.position_m) > 0.0, "the front of {point:?} looks inwards");
+    }
+}
+
+#[test]
+fn b12_each_of_160_instances_has_its_own_texels() {
+    let matrices = (0..160).map(|i| DMat4::from_translation(DVec3::X * f64::from(i))).collect();
+    let scene = scene(vec![(sphere(6), matrices)]);
+    let baked = bake_and_check(&scene, &settings(512));
+    let mut texels = vec![0; 160];
+    for sample in &baked.pages[0].samples {
+        texels[baked.geometry.instance[sample.triangle as usize] as usize] += 1;
+    }
+    let (least, most) = (texels.iter().min().unwrap(), texels.iter().max().unwrap());
+    assert!(*least > 0 && least == most, "from {least} to {most} texels an instance");
+}
+
+#[test]
+fn b16_coordinates_that_cannot_serve_are_replaced() {
+    let with = |uvs: Option<Vec<Vec2>>| {
+        let mut two = triangles(&[[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X]]);
+        two.texcoords = [uvs.clone(), uvs];
+        origin_of(&scene(vec![(two, once())]))
+    };
+    let corner = [(0.1, 0.1), (0.4, 0.1), (0.1, 0.9)].map(Vec2::from);
+    let other = corner.map(|uv| Vec2::new(1.0 - uv.x, uv.y));
+    let both = |a: [Vec2; 3], b: [Vec2; 3]| Some([a, b].concat());
+    assert_eq!(with(both(corner, other)), LayoutOrigin::File, "mirrored islands may stay");
+    assert_eq!(with(None), LayoutOrigin::Unwrapped, "none");
+    assert_eq!(with(both(corner, corner)), LayoutOrigin::Unwrapped, "overlapping");
+    assert_eq!(
+        with(both(corner, corner.map(|uv| Vec2::new(0.5 - uv.x, uv.y)))),
+        LayoutOrigin::Unwrapped,
+        "mirrored over"
+    );
+    assert_eq!(with(both(corner, other.map(|uv| uv + Vec2::X * 7.0))), LayoutOrigin::Unwrapped, "tiled far outside");
+    assert_eq!(with(both(corner, [Vec2::splat(0.9); 3])), LayoutOrigin::Unwrapped, "without area");
+    assert_eq!(with(both(corner, [Vec2::NAN; 3])), LayoutOrigin::Unwrapped, "not numbers");
+    let specks = corner.map(|uv| uv * 0.01);
+    assert_eq!(with(both(specks, specks.map(|uv| uv + 0.95))), LayoutOrigin::File, "small, and the whole scene's");
+    let mut quad = lit_quad(Vec2::splat(0.1), Vec2::splat(0.9));
+    quad.texcoords.swap(0, 1);
+    assert_eq!(origin_of(&scene(vec![(quad, once())])), LayoutOrigin::Unwrapped, "TEXCOORD_0 is never trusted");
+}
+
+fn origin_of(scene: &Scene) -> LayoutOrigin {
+    bake_and_check(scene, &settings(128)).atlas.layouts[0].origin
+}

@@ -1,0 +1,148 @@
+//! Where the picture is taken from. Cameras live in bake space and in `f64`; what both the GPU and a ray tracer use of
+//! them (the eye, the rays) is rounded to `f32` once, here, so that both look along the same rays.
+
+mod framing;
+
+use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
+use sunbake::scene::Scene;
+
+/// A perspective camera, bake space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// Where it stands.
+    pub eye_m: DVec3,
+    /// Unit vector along which it looks.
+    pub forward: DVec3,
+    /// Unit vector to the picture's right.
+    pub right: DVec3,
+    /// Unit vector to the picture's top.
+    pub up: DVec3,
+    /// Vertical field of view.
+    pub fov_y_rad: f64,
+}
+
+impl Camera {
+    /// A camera that looks from one point to another, upright. None if the points coincide.
+    pub fn look_at(eye_m: DVec3, target_m: DVec3, fov_y_rad: f64) -> Option<Self> {
+        let forward = (target_m - eye_m).try_normalize()?;
+        // Looking straight up or down, north is at the picture's top.
+        let right = forward.cross(DVec3::Y).try_normalize().filter(|_| forward.y.abs() < 1.0 - 1e-12);
+        let right = right.unwrap_or(DVec3::X);
+        Some(Self { eye_m, forward, right, up: right.cross(forward), fov_y_rad })
+    }
+
+    /// A camera of the file.
+    pub fn from_scene(camera: &sunbake::scene::Camera) -> Self {
+        let matrix = camera.bake_from_camera;
+        let axis = |v: DVec3| matrix.transform_vector3(v).normalize_or(v);
+        Self {
+            eye_m: matrix.transform_point3(DVec3::ZERO),
+            forward: axis(DVec3::NEG_Z),
+            right: axis(DVec3::X),
+            up: axis(DVec3::Y),
+            fov_y_rad: camera.fov_y_rad,
+        }
+    }
+}
+
+/// A camera with a picture's size.
+///
+/// The ray through pixel coordinates (x, y) (pixel centres at halves) is `first + per_column x + per_row y`, one deep
+/// along `forward`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The eye in bake space.
+    pub eye_m: Vec3,
+    /// Unit vector along which the camera looks.
+    pub forward: Vec3,
+    /// Ray through the picture's upper left corner.
+    pub ray_first: Vec3,
+    /// What a step of one pixel to the right adds.
+    pub ray_per_column: Vec3,
+    /// What a step of one pixel down adds.
+    pub ray_per_row: Vec3,
+    /// Angle between neighbouring pixels at the picture's centre.
+    pub pixel_angle_rad: f32,
+    /// Rows of the matrix to clip space, less the depth row.
+    clip_rows: [Vec3; 2],
+    /// Depth at which surfaces start to be drawn.
+    near_m: f32,
+}
+
+impl View {
+    /// A picture of `size` pixels. `scene` tells what is near: a millionth of its size.
+    pub fn new(camera: &Camera, size: [u32; 2], scene: &Scene) -> Self {
+        let half_up = (0.5 * camera.fov_y_rad).tan();
+        let half = DVec2::new(half_up * f64::from(size[0]) / f64::from(size[1]), half_up);
+        let per_column = camera.right * (2.0 * half.x / f64::from(size[0]));
+        let per_row = -camera.up * (2.0 * half.y / f64::from(size[1]));
+        let first = camera.forward - camera.right * half.x + camera.up * half.y;
+        Self {
+            size,
+            eye_m: camera.eye_m.as_vec3(),
+            forward: camera.forward.as_vec3(),
+            ray_first: first.as_vec3(),
+            ray_per_column: per_column.as_vec3(),
+            ray_per_row: per_row.as_vec3(),
+            pixel_angle_rad: per_row.length() as f32,
+            clip_rows: [(camera.right / half.x).as_vec3(), (camera.up / half.y).as_vec3()],
+            near_m: (scene.half_extent_m.max_element() * 1e-6).max(1e-30) as f32,
+        }
+    }
+
+    /// Reversed and infinite: depth is near over distance, 1 at the near plane and 0 at infinity, so that `f32` depths
+    /// are as precise far away as they are close by.
+    pub fn clip_from_eye(&self) -> Mat4 {
+        let [x, y] = self.clip_rows;
+        Mat4::from_cols(x.extend(0.0), y.extend(0.0), Vec4::new(0.0, 0.0, 0.0, self.near_m), self.forward.extend(0.0))
+            .transpose()
+    }
+
+    /// The ray through a pixel's centre, one deep.
+    pub fn ray(&self, column: u32, row: u32) -> Vec3 {
+        self.ray_first + self.ray_per_column * (column as f32 + 0.5) + self.ray_per_row * (row as f32 + 0.5)
+    }
+
+    /// Number of pixels.
+    pub fn pixel_count(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunbake::testing::SceneBuilder;
+
+    fn view() -> View {
+        let camera = Camera::look_at(DVec3::new(3.0, 2.0, 1.0), DVec3::new(0.0, 0.5, -4.0), 0.8).unwrap();
+        View::new(&camera, [40, 30], &SceneBuilder::new().block(Vec3::ZERO, Vec3::ONE).build())
+    }
+
+    #[test]
+    fn a_point_along_a_pixels_ray_lands_on_that_pixels_centre() {
+        let view = view();
+        for (column, row) in [(0, 0), (39, 29), (7, 21)] {
+            let clip = view.clip_from_eye() * (view.ray(column, row) * 5.0).extend(1.0);
+            let x = (clip.x / clip.w + 1.0) * 20.0;
+            let y = (1.0 - clip.y / clip.w) * 15.0;
+            assert!((x - column as f32 - 0.5).abs() < 1e-4 && (y - row as f32 - 0.5).abs() < 1e-4, "{x} {y}");
+            assert!((clip.w - 5.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_direction_without_end_has_depth_zero() {
+        let clip = view().clip_from_eye() * view().forward.extend(0.0);
+        assert_eq!((clip.z, clip.w > 0.9), (0.0, true));
+    }
+
+    #[test]
+    fn looking_straight_down_is_a_camera() {
+        let camera = Camera::look_at(DVec3::Y * 5.0, DVec3::ZERO, 0.8).unwrap();
+        assert!(camera.up.abs_diff_eq(DVec3::NEG_Z, 1e-12) && camera.right.abs_diff_eq(DVec3::X, 1e-12));
+        assert!(Camera::look_at(DVec3::ONE, DVec3::ONE, 0.8).is_none());
+    }
+}

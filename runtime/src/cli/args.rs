@@ -1,0 +1,231 @@
+//! Every option, with its range and its default.
+
+use super::place::{CameraChoice, parse_camera};
+use super::when::{When, parse_when};
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use sunbake_runtime::Filter;
+use sunbake_runtime::technique::Truth;
+
+/// Plays sunbake's maps back at any time of the day.
+#[derive(Debug, Parser)]
+#[command(name = "sunplay", version, max_term_width = 110)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw one picture of a set.
+    Frame(FrameArgs),
+    /// Draw a day of a set: numbered pictures, a contact sheet, an animation.
+    Frames(FramesArgs),
+    /// Bake our own scene for a June day and draw the day beside truth.
+    Demo(DemoArgs),
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct FrameArgs {
+    /// The set's folder.
+    pub set: PathBuf,
+    /// When: HH:MM by the set's local clocks, or a fraction of its path from 0 to 1.
+    ///
+    /// The set's path runs from sunrise to sunset unless it was baked otherwise; `sunbake inspect` prints it.
+    #[arg(long, value_name = "HH:MM|T", value_parser = parse_when, default_value = "0.5")]
+    pub at: When,
+    /// File to write: .png, or .exr for the numbers themselves.
+    ///
+    /// A colour PNG holds the tone-mapped picture and a colour EXR linear light. A visibility PNG is grey with 16 bits, 0
+    /// for shade and 65535 for full sun, and a visibility EXR has one channel, Y.
+    #[arg(short, long, value_name = "FILE")]
+    pub output_file: PathBuf,
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// What the picture shows.
+    #[arg(long = "output", value_enum, default_value_t = OutputChoice::Color)]
+    pub output: OutputChoice,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct FramesArgs {
+    /// The set's folder.
+    pub set: PathBuf,
+    /// How many pictures, 1 to 10000, at the middles of as many equal parts of the path.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub count: u32,
+    /// Folder for the pictures; made if it is not there. Files of the same name are replaced.
+    ///
+    /// It gets frame_0000.png and so on, contact.png with all of them small, and day.png, an animated PNG.
+    #[arg(short, long = "folder", value_name = "DIR")]
+    pub output_folder: PathBuf,
+    #[command(flatten)]
+    pub look: LookArgs,
+    /// What the pictures show.
+    #[arg(long = "output", value_enum, default_value_t = OutputChoice::Color)]
+    pub output: OutputChoice,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+#[derive(Debug, ClapArgs)]
+pub struct DemoArgs {
+    /// Folder for what the demo makes; the set goes into its folder `set`.
+    #[arg(short, long, value_name = "DIR", default_value = "target/demo")]
+    pub output: PathBuf,
+    /// Another scene than our own: .gltf or .glb.
+    #[arg(long, value_name = "FILE")]
+    pub scene: Option<PathBuf>,
+    /// Edge of the set's page in texels, 64 to 16384. Time and bytes grow with the square.
+    #[arg(long, value_name = "N", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(64..=16384))]
+    pub page_size: u32,
+    /// Columns of the sheet, 1 to 24.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=24))]
+    pub count: u32,
+    /// What draws the baked row: the GPU if there is one, the GPU, or the CPU.
+    #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
+    pub renderer: RendererChoice,
+    /// Threads; 0 is one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    #[command(flatten)]
+    pub manners: MannersArgs,
+}
+
+/// What is printed.
+#[derive(Debug, Clone, Copy, ClapArgs)]
+#[command(next_help_heading = "Printing")]
+pub struct MannersArgs {
+    /// Print what was drawn, and at what cost, as JSON on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// How pictures are taken, whatever they are of.
+#[derive(Debug, Clone, ClapArgs)]
+#[command(next_help_heading = "Look")]
+pub struct LookArgs {
+    /// Width and height in pixels, each 1 to 16384.
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1280x720")]
+    pub size: [u32; 2],
+    /// A camera of the scene by name, `default`, or "ex,ey,ez,tx,ty,tz[,fov]".
+    ///
+    /// The numbers are the eye and the point it looks at in the scene's world space, in metres, and the vertical field
+    /// of view in degrees, 45 unless given. The default is the scene's first camera or, if it has none, a view from
+    /// above and aside that shows most of it.
+    #[arg(long, value_name = "CAMERA", value_parser = parse_camera, default_value = "default", allow_hyphen_values = true)]
+    pub camera: CameraChoice,
+    /// How visibility is found: baked, truth:hard, truth:soft or truth:soft:N.
+    ///
+    /// `truth:hard` traces one ray to the sun's centre from each pixel, `truth:soft` N rays over its disc, 64 unless
+    /// given: time grows with N, noise shrinks as 1/N.
+    #[arg(long, value_name = "TECHNIQUE", value_parser = parse_technique, default_value = "baked")]
+    pub technique: TechniqueChoice,
+    /// How stored times are filtered.
+    #[arg(long, value_enum, default_value_t = FilterChoice::Bilinear)]
+    pub filter: FilterChoice,
+    /// Draw N times as wide and high, and average: 1 to 8. Time grows with the square.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub supersample: u32,
+    /// What draws: the GPU if there is one, the GPU, or the CPU.
+    #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
+    pub renderer: RendererChoice,
+    /// Threads; 0 is one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+}
+
+/// What a picture shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OutputChoice {
+    /// The lit scene.
+    Color,
+    /// How much of the sun is seen, and nothing else; pixels without a surface read 1.
+    Visibility,
+}
+
+/// How visibility is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TechniqueChoice {
+    /// From the maps.
+    Baked,
+    /// By rays.
+    Truth(Truth),
+}
+
+/// How stored times are filtered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FilterChoice {
+    /// Four texels are evaluated, then blended.
+    Bilinear,
+    /// One texel: blocky, the look of the chapter.
+    Nearest,
+}
+
+impl From<FilterChoice> for Filter {
+    fn from(choice: FilterChoice) -> Self {
+        match choice {
+            FilterChoice::Bilinear => Self::Bilinear,
+            FilterChoice::Nearest => Self::Nearest,
+        }
+    }
+}
+
+/// What draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RendererChoice {
+    /// The GPU, or the CPU where there is none.
+    Auto,
+    /// The GPU.
+    Gpu,
+    /// The CPU.
+    Cpu,
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let wrong = || format!("`{text}` is not a size: give WIDTHxHEIGHT in pixels, as 1280x720");
+    let (width, height) = text.split_once('x').ok_or_else(wrong)?;
+    let edge = |text: &str| text.parse().ok().filter(|edge| (1..=16_384).contains(edge)).ok_or_else(wrong);
+    Ok([edge(width)?, edge(height)?])
+}
+
+fn parse_technique(text: &str) -> Result<TechniqueChoice, String> {
+    let wrong = || format!("`{text}` is not a technique: give baked, truth:hard, truth:soft or truth:soft:N");
+    match text {
+        "baked" => Ok(TechniqueChoice::Baked),
+        "truth:hard" => Ok(TechniqueChoice::Truth(Truth::Hard)),
+        "truth:soft" => Ok(TechniqueChoice::Truth(Truth::Soft { rays: Truth::DEFAULT_RAYS })),
+        _ => {
+            let rays = text.strip_prefix("truth:soft:").and_then(|n| n.parse().ok()).ok_or_else(wrong)?;
+            (1..=65_536).contains(&rays).then_some(TechniqueChoice::Truth(Truth::Soft { rays })).ok_or_else(wrong)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_options_are_consistent() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_techniques_outside_their_range_are_refused() {
+        assert_eq!(parse_size("640x360"), Ok([640, 360]));
+        for bad in ["640", "0x4", "x", "4x", "20000x4", "-4x4", "4x4x4"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+        assert_eq!(parse_technique("truth:soft:9"), Ok(TechniqueChoice::Truth(Truth::Soft { rays: 9 })));
+        for bad in ["truth", "truth:", "truth:soft:", "truth:soft:0", "truth:soft:x", "volumes"] {
+            assert!(parse_technique(bad).is_err(), "{bad}");
+        }
+    }
+}

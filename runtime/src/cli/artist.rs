@@ -1,0 +1,81 @@
+//! What draws: the technique that was asked for, on the hardware that is there.
+
+use super::args::{LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
+use super::exit::Failure;
+use sunbake_runtime::gpu::{Gpu, GpuError};
+use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
+use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage, View};
+
+/// Opens the GPU if the technique wants one. None: the CPU draws.
+pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
+    let wants_gpu = look.technique == TechniqueChoice::Baked && look.renderer != RendererChoice::Cpu;
+    if !wants_gpu {
+        return match (look.renderer, look.technique) {
+            (RendererChoice::Gpu, TechniqueChoice::Truth(_)) => {
+                Err(Failure::usage("truth is traced on the CPU: leave --renderer gpu out, or draw --technique baked"))
+            }
+            _ => Ok(None),
+        };
+    }
+    match Gpu::open() {
+        Ok(gpu) => Ok(Some(gpu)),
+        Err(GpuError::NoAdapter { .. }) if look.renderer == RendererChoice::Auto => {
+            if !quiet {
+                eprintln!("no GPU adapter found: drawing on the CPU");
+            }
+            Ok(None)
+        }
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The technique that was asked for, ready to draw a stage.
+pub fn technique<'a>(
+    gpu: Option<&'a Gpu>,
+    stage: &'a Stage,
+    look: &LookArgs,
+) -> Result<Box<dyn Technique + 'a>, Failure> {
+    let filter: Filter = look.filter.into();
+    Ok(match (gpu, look.technique) {
+        (Some(gpu), TechniqueChoice::Baked) => Box::new(BakedGpu::new(gpu, stage, filter)?),
+        (None, TechniqueChoice::Baked) => Box::new(BakedCpu::new(stage, filter)),
+        (_, TechniqueChoice::Truth(truth)) => Box::new(truth),
+    })
+}
+
+/// The view that was asked for, with all its samples.
+pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
+    let size = look.size.map(|edge| edge * look.supersample);
+    let camera = look.camera.on(stage, f64::from(size[0]) / f64::from(size[1]))?;
+    Ok(View::new(&camera, size, &stage.scene))
+}
+
+/// What a frame is made of.
+pub enum Picture {
+    /// Linear light.
+    Color(Raster<glam::Vec3>),
+    /// Share of the sun.
+    Visibility(Raster<f32>),
+}
+
+/// Draws a frame.
+pub fn draw(
+    technique: &mut dyn Technique,
+    shot: &Shot,
+    moment: &Moment,
+    output: OutputChoice,
+) -> Result<Picture, Failure> {
+    Ok(match output {
+        OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
+        OutputChoice::Visibility => Picture::Visibility(technique.visibility(shot, moment)?),
+    })
+}
+
+/// Sets the number of threads that draw.
+pub fn set_threads(threads: usize) -> Result<(), Failure> {
+    if threads == 0 {
+        return Ok(());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|e| Failure::unsupported(format!("cannot start {threads} threads: {e}; give a smaller --threads")))
+}

@@ -1,0 +1,86 @@
+//! Exit codes: 0 done, 1 usage, 2 input or output failed, 3 the input is bad, 4 internal, 5 not supported here.
+
+use std::error::Error;
+use std::process::ExitCode;
+use sunbake::BakeError;
+use sunbake::disk::read::ReadError;
+use sunbake::scene::ErrorClass;
+use sunbake_runtime::gpu::GpuError;
+use sunbake_runtime::stage::StageError;
+
+/// A failure with its exit code.
+#[derive(Debug)]
+pub struct Failure {
+    /// What to exit with.
+    pub code: u8,
+    /// What to print.
+    pub error: Box<dyn Error>,
+}
+
+impl Failure {
+    /// The options do not fit together, or do not fit the set.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self { code: 1, error: message.into().into() }
+    }
+
+    /// Reading or writing failed.
+    pub fn io(message: impl Into<String>) -> Self {
+        Self { code: 2, error: message.into().into() }
+    }
+
+    /// This machine cannot do it.
+    pub fn unsupported(message: impl Into<String>) -> Self {
+        Self { code: 5, error: message.into().into() }
+    }
+}
+
+impl From<StageError> for Failure {
+    fn from(error: StageError) -> Self {
+        let code = match &error {
+            StageError::Set(ReadError::Io { .. } | ReadError::NotASet { .. }) => 2,
+            StageError::Scene(error) if error.class() == ErrorClass::Io => 2,
+            StageError::Set(_) | StageError::Scene(_) | StageError::Mismatch { .. } => 3,
+        };
+        Self { code, error: error.into() }
+    }
+}
+
+impl From<BakeError> for Failure {
+    fn from(error: BakeError) -> Self {
+        let code = match &error {
+            BakeError::Load(load) if load.class() == ErrorClass::Io => 2,
+            BakeError::Write(_) => 2,
+            BakeError::Threads { .. } => 5,
+            _ => 3,
+        };
+        Self { code, error: error.into() }
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        Self { code: 5, error: error.into() }
+    }
+}
+
+/// Prints what clap has to say. Help and version are no failure.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    // If even this cannot be printed there is nobody to tell.
+    let _ = error.print();
+    ExitCode::from(u8::from(error.use_stderr()))
+}
+
+/// Runs a command and turns its end into an exit code. A panic is a defect of ours, and says so.
+pub fn report(command: impl FnOnce() -> Result<(), Failure> + std::panic::UnwindSafe) -> ExitCode {
+    match std::panic::catch_unwind(command) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            eprintln!("sunplay: {}", failure.error);
+            ExitCode::from(failure.code)
+        }
+        Err(_) => {
+            eprintln!("sunplay: this is a defect in sunplay: please report it with the message above and the set");
+            ExitCode::from(4)
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Pictures into files.
+
+use super::exit::Failure;
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
+use glam::Vec3;
+use std::path::Path;
+use sunbake_runtime::Raster;
+use sunbake_runtime::light::{codes_from_display, display_from_light};
+
+/// Kinds of file, by their ending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// `.png`.
+    Png,
+    /// `.exr`.
+    Exr,
+}
+
+/// The kind that a file's ending asks for.
+pub fn kind(path: &Path) -> Result<Kind, Failure> {
+    let ending = path.extension().map(|e| e.to_ascii_lowercase());
+    match ending.as_deref().and_then(|e| e.to_str()) {
+        Some("png") => Ok(Kind::Png),
+        Some("exr") => Ok(Kind::Exr),
+        _ => Err(Failure::usage(format!("cannot tell the kind of {}: name it .png or .exr", path.display()))),
+    }
+}
+
+/// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone curve,
+/// so that one bright sample does not outshine a pixel.
+pub fn displayed(light: &Raster<Vec3>, supersample: u32) -> Raster<[u8; 3]> {
+    let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
+    let reduced = display.reduced(supersample);
+    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
+}
+
+/// Writes a picture in colour.
+pub fn write_color(path: &Path, light: &Raster<Vec3>, supersample: u32) -> Result<(), Failure> {
+    match kind(path)? {
+        Kind::Png => write_rgb(path, &displayed(light, supersample)),
+        Kind::Exr => {
+            let light = light.reduced(supersample);
+            let channel = |axis: usize| light.pixels.iter().map(|l| l[axis]).collect();
+            write_exr(path, light.size, [("R", channel(0)), ("G", channel(1)), ("B", channel(2))])
+        }
+    }
+}
+
+/// Writes visibility.
+pub fn write_visibility(path: &Path, visibility: &Raster<f32>, supersample: u32) -> Result<(), Failure> {
+    let visibility = visibility.reduced(supersample);
+    match kind(path)? {
+        Kind::Png => {
+            let codes = visibility.pixels.iter().map(|v| (v.clamp(0.0, 1.0) * 65_535.0).round() as u16);
+            let bytes: Vec<u8> = codes.flat_map(u16::to_be_bytes).collect();
+            write_png(path, visibility.size, png::ColorType::Grayscale, png::BitDepth::Sixteen, &bytes)
+        }
+        Kind::Exr => write_exr(path, visibility.size, [("Y", visibility.pixels)]),
+    }
+}
+
+/// Writes a picture of sRGB codes.
+pub fn write_rgb(path: &Path, picture: &Raster<[u8; 3]>) -> Result<(), Failure> {
+    write_png(path, picture.size, png::ColorType::Rgb, png::BitDepth::Eight, picture.pixels.as_flattened())
+}
+
+/// Grey sRGB codes of visibility, as sheets and animations show it: full sun is white.
+pub fn displayed_visibility(visibility: &Raster<f32>, supersample: u32) -> Raster<[u8; 3]> {
+    let reduced = visibility.reduced(supersample);
+    let grey = |&v: &f32| [(v.clamp(0.0, 1.0) * 255.0).round() as u8; 3];
+    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(grey).collect() }
+}
+
+/// Makes a folder, and those above it.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|e| cannot_write(folder, &e))
+}
+
+fn write_exr<const N: usize>(path: &Path, size: [u32; 2], channels: [(&str, Vec<f32>); N]) -> Result<(), Failure> {
+    let channels = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, FlatSamples::F32(samples)));
+    let channels = AnyChannels::sort(channels.collect());
+    let image = Image::from_channels((size[0] as usize, size[1] as usize), channels);
+    image.write().to_file(path).map_err(|e| cannot_write(path, &e))
+}
+
+fn write_png(
+    path: &Path,
+    size: [u32; 2],
+    color: png::ColorType,
+    depth: png::BitDepth,
+    bytes: &[u8],
+) -> Result<(), Failure> {
+    let write = || -> Result<(), png::EncodingError> {
+        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, size[0], size[1]);
+        encoder.set_color(color);
+        encoder.set_depth(depth);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(bytes)?;
+        writer.finish()
+    };
+    write().map_err(|e| cannot_write(path, &e))
+}
+
+/// A file that cannot be written.
+pub fn cannot_write(path: &Path, reason: &dyn std::fmt::Display) -> Failure {
+    Failure::io(format!("cannot write {}: {reason}; choose another place with -o", path.display()))
+}
+
+/// Writes pictures as an animated PNG that plays for ever, `delay_ms` each.
+pub fn write_animation(path: &Path, pictures: &[Raster<[u8; 3]>], delay_ms: u16) -> Result<(), Failure> {
+    let Some(size) = pictures.first().map(|picture| picture.size) else { return Ok(()) };
+    let write = || -> Result<(), png::EncodingError> {
+        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
+        let mut encoder = png::Encoder::new(file, size[0], size[1]);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_animated(pictures.len() as u32, 0)?;
+        encoder.set_frame_delay(delay_ms, 1000)?;
+        let mut writer = encoder.write_header()?;
+        for picture in pictures {
+            writer.write_image_data(picture.pixels.as_flattened())?;
+        }
+        writer.finish()
+    };
+    write().map_err(|e| cannot_write(path, &e))
+}

@@ -1,0 +1,41 @@
+//! `sunplay frame`.
+
+use super::args::FrameArgs;
+use super::artist::{Picture, draw, open_gpu, set_threads, technique, view};
+use super::exit::Failure;
+use super::files::{kind, write_color, write_visibility};
+use super::when::label;
+use serde_json::json;
+use std::time::Instant;
+use sunbake_runtime::{Moment, Shot, Stage};
+
+/// Draws one picture.
+pub fn run(args: &FrameArgs) -> Result<(), Failure> {
+    kind(&args.output_file)?;
+    set_threads(args.look.threads)?;
+    let stage = Stage::read(&args.set)?;
+    let t = args.at.on(stage.path.as_ref())?;
+    let shot = Shot::new(&stage, view(&stage, &args.look)?);
+    let moment = Moment::new(stage.path.as_ref(), t);
+    let gpu = open_gpu(&args.look, args.manners.quiet)?;
+    let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
+    let start = Instant::now();
+    match draw(technique.as_mut(), &shot, &moment, args.output)? {
+        Picture::Color(light) => write_color(&args.output_file, &light, args.look.supersample)?,
+        Picture::Visibility(seen) => write_visibility(&args.output_file, &seen, args.look.supersample)?,
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
+    let clock = label(stage.path.as_ref(), t);
+    if args.manners.json {
+        let report = json!({
+            "file": args.output_file, "t": t, "clock": clock, "size": args.look.size, "seconds": seconds,
+            "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
+            "gpu": technique.census(),
+        });
+        println!("{report:#}");
+    } else if !args.manners.quiet {
+        println!("{} at {clock} -> {} ({seconds:.2} s on {renderer})", args.set.display(), args.output_file.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,75 @@
+//! `sunplay frames`.
+
+use super::args::FramesArgs;
+use super::artist::{Picture, draw, open_gpu, set_threads, technique, view};
+use super::exit::Failure;
+use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
+use super::terminal::Terminal;
+use super::when::label;
+use serde_json::json;
+use std::time::Instant;
+use sunbake_runtime::sheet::{contact_sheet, thumbnail};
+use sunbake_runtime::{Moment, Raster, Shot, Stage};
+
+/// Widest picture on the contact sheet, in pixels.
+const SHEET_PICTURE_WIDTH: u32 = 400;
+/// Widest picture of the animation, in pixels.
+const ANIMATION_WIDTH: u32 = 960;
+/// How long the animation takes, in milliseconds, and the longest that it stays on one picture.
+const ANIMATION_MS: [u32; 2] = [6000, 400];
+
+/// Draws a day.
+pub fn run(args: &FramesArgs) -> Result<(), Failure> {
+    set_threads(args.look.threads)?;
+    let stage = Stage::read(&args.set)?;
+    let shot = Shot::new(&stage, view(&stage, &args.look)?);
+    let gpu = open_gpu(&args.look, args.manners.quiet)?;
+    let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
+    make_folder(&args.output_folder)?;
+    let terminal = Terminal::new(args.manners.quiet);
+    terminal.begin("drawing the day", u64::from(args.count));
+    let start = Instant::now();
+    let mut small: Vec<(Raster<[u8; 3]>, String)> = Vec::new();
+    let mut moving = Vec::new();
+    let mut drawn = Vec::new();
+    for i in 0..args.count {
+        let t = (f64::from(i) + 0.5) / f64::from(args.count);
+        let moment = Moment::new(stage.path.as_ref(), t);
+        let picture = match draw(technique.as_mut(), &shot, &moment, args.output)? {
+            Picture::Color(light) => displayed(&light, args.look.supersample),
+            Picture::Visibility(seen) => displayed_visibility(&seen, args.look.supersample),
+        };
+        let name = format!("frame_{i:04}.png");
+        write_rgb(&args.output_folder.join(&name), &picture)?;
+        let clock = label(stage.path.as_ref(), t);
+        drawn.push(json!({ "file": name, "t": t, "clock": clock }));
+        small.push((thumbnail(&picture, SHEET_PICTURE_WIDTH), clock));
+        moving.push(thumbnail(&picture, ANIMATION_WIDTH));
+        terminal.step(1);
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    write_rgb(&args.output_folder.join("contact.png"), &contact_sheet(&small, columns(args.count)))?;
+    let delay_ms = (ANIMATION_MS[0] / args.count).clamp(20, ANIMATION_MS[1]) as u16;
+    write_animation(&args.output_folder.join("day.png"), &moving, delay_ms)?;
+    drop(terminal);
+    let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
+    if args.manners.json {
+        let report = json!({
+            "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
+            "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
+            "bytes": technique.bytes(), "gpu": technique.census(),
+        });
+        println!("{report:#}");
+    } else if !args.manners.quiet {
+        let folder = args.output_folder.display();
+        println!("{} pictures in {seconds:.1} s on {renderer}", args.count);
+        println!("  {folder}/contact.png   all of them small");
+        println!("  {folder}/day.png       an animated PNG");
+    }
+    Ok(())
+}
+
+/// Columns of a sheet of so many pictures: somewhat wider than high.
+fn columns(count: u32) -> u32 {
+    ((f64::from(count) * 1.2).sqrt().round() as u32).max(1)
+}

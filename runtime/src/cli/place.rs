@@ -1,0 +1,100 @@
+//! Cameras, as asked for.
+
+use super::exit::Failure;
+use glam::DVec3;
+use sunbake_runtime::{Camera, Stage};
+
+/// A camera, as asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CameraChoice {
+    /// The one that shows the scene well.
+    Default,
+    /// One of the scene's.
+    Named(String),
+    /// From a point towards a point, world space.
+    LookAt {
+        /// Where it stands.
+        eye_m: DVec3,
+        /// What it looks at.
+        target_m: DVec3,
+        /// Vertical field of view in degrees.
+        fov_deg: f64,
+    },
+}
+
+/// Vertical field of view unless given, in degrees.
+const FOV_DEG: f64 = 45.0;
+
+/// Reads a camera. What is all numbers is a pair of points; anything else is a name.
+pub fn parse_camera(text: &str) -> Result<CameraChoice, String> {
+    if text == "default" {
+        return Ok(CameraChoice::Default);
+    }
+    let numbers: Option<Vec<f64>> =
+        text.split(',').map(|x| x.trim().parse().ok().filter(|x: &f64| x.is_finite())).collect();
+    let Some(numbers) = numbers else { return Ok(CameraChoice::Named(text.to_owned())) };
+    let (points, fov_deg) = match numbers.len() {
+        6 => (numbers.as_slice(), FOV_DEG),
+        7 => (&numbers[..6], numbers[6]),
+        count => {
+            return Err(format!("`{text}` has {count} numbers; a camera has six or seven: ex,ey,ez,tx,ty,tz[,fov]"));
+        }
+    };
+    if !(1.0..=170.0).contains(&fov_deg) {
+        return Err(format!("a field of view of {fov_deg} degrees is out of range: give 1 to 170"));
+    }
+    let (eye_m, target_m) = (DVec3::from_slice(&points[..3]), DVec3::from_slice(&points[3..]));
+    if eye_m == target_m {
+        return Err(format!("`{text}` looks from a point at the same point: give two points"));
+    }
+    Ok(CameraChoice::LookAt { eye_m, target_m, fov_deg })
+}
+
+impl CameraChoice {
+    /// The camera on a stage.
+    pub fn on(&self, stage: &Stage, aspect: f64) -> Result<Camera, Failure> {
+        match self {
+            Self::Default => Ok(Camera::default_of(stage, aspect)),
+            Self::Named(name) => named(stage, name),
+            Self::LookAt { eye_m, target_m, fov_deg } => {
+                let centre_m = stage.scene.centre_m;
+                let camera = Camera::look_at(*eye_m - centre_m, *target_m - centre_m, fov_deg.to_radians());
+                camera.ok_or_else(|| {
+                    Failure::usage("the camera's two points are too close: give two points further apart")
+                })
+            }
+        }
+    }
+}
+
+fn named(stage: &Stage, name: &str) -> Result<Camera, Failure> {
+    let cameras = &stage.scene.cameras;
+    if let Some(camera) = cameras.iter().find(|camera| camera.name.as_deref() == Some(name)) {
+        return Ok(Camera::from_scene(camera));
+    }
+    let names: Vec<&str> = cameras.iter().filter_map(|camera| camera.name.as_deref()).collect();
+    let known =
+        if names.is_empty() { "the set's scene has none".into() } else { format!("it has {}", names.join(", ")) };
+    Err(Failure::usage(format!(
+        "there is no camera named {name}: {known}; leave --camera out, or give ex,ey,ez,tx,ty,tz[,fov]"
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_are_names_or_points() {
+        assert_eq!(parse_camera("hero"), Ok(CameraChoice::Named("hero".into())));
+        assert_eq!(parse_camera("default"), Ok(CameraChoice::Default));
+        let camera = parse_camera("-1,2,3, 0,0,0,60").unwrap();
+        assert_eq!(
+            camera,
+            CameraChoice::LookAt { eye_m: DVec3::new(-1.0, 2.0, 3.0), target_m: DVec3::ZERO, fov_deg: 60.0 }
+        );
+        for bad in ["1,2,3", "1,2,3,1,2,3", "0,0,0,1,1,1,0", "0,0,0,1,1,1,180", "1,2,3,4,5,6,7,8"] {
+            assert!(parse_camera(bad).is_err(), "{bad}");
+        }
+    }
+}

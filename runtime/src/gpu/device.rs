@@ -1,0 +1,93 @@
+//! An adapter and a device, opened without a window.
+
+use std::fmt::Display;
+
+/// A GPU that is ready to work.
+pub struct Gpu {
+    /// What makes things.
+    pub device: wgpu::Device,
+    /// What does things.
+    pub queue: wgpu::Queue,
+    /// The adapter's name, its kind and its driver.
+    pub name: String,
+}
+
+/// What a GPU could not do.
+#[derive(Debug, thiserror::Error)]
+pub enum GpuError {
+    /// There is none.
+    #[error(
+        "no GPU adapter found ({reason}); install a Vulkan driver (Mesa's lavapipe will do), or draw with --renderer cpu"
+    )]
+    NoAdapter {
+        /// What was tried.
+        reason: String,
+    },
+    /// There is one, and it does not open.
+    #[error("the GPU {name} does not open: {reason}; draw with --renderer cpu")]
+    NoDevice {
+        /// Which.
+        name: String,
+        /// What it says.
+        reason: String,
+    },
+    /// The set does not fit the adapter.
+    #[error("{what} is {needed}; this GPU takes {limit}: draw with --renderer cpu, or bake with a smaller --size")]
+    Limit {
+        /// What does not fit.
+        what: String,
+        /// Its measure.
+        needed: u64,
+        /// The adapter's.
+        limit: u64,
+    },
+    /// It failed while working.
+    #[error("the GPU failed {doing}: {reason}; draw with --renderer cpu")]
+    Failed {
+        /// At what.
+        doing: &'static str,
+        /// What it says.
+        reason: String,
+    },
+}
+
+impl GpuError {
+    pub(super) fn failed(doing: &'static str, reason: impl Display) -> Self {
+        Self::Failed { doing, reason: reason.to_string() }
+    }
+
+    pub(super) fn check_limit(what: impl Into<String>, needed: u64, limit: u64) -> Result<(), Self> {
+        if needed <= limit { Ok(()) } else { Err(Self::Limit { what: what.into(), needed, limit }) }
+    }
+}
+
+impl Gpu {
+    /// Opens the fastest adapter there is.
+    pub fn open() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|e| GpuError::NoAdapter { reason: e.to_string() })?;
+        let info = adapter.get_info();
+        let descriptor =
+            wgpu::DeviceDescriptor { label: Some("sunplay"), required_limits: adapter.limits(), ..Default::default() };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| GpuError::NoDevice { name: info.name.clone(), reason: e.to_string() })?;
+        Ok(Self { device, queue, name: format!("{} ({:?}, {})", info.name, info.device_type, info.driver) })
+    }
+
+    /// Runs `work` and turns what the device complains of into an error.
+    pub(super) fn checked<T>(&self, doing: &'static str, work: impl FnOnce() -> T) -> Result<T, GpuError> {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validity = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let made = work();
+        let complaints = [pollster::block_on(validity.pop()), pollster::block_on(memory.pop())];
+        match complaints.into_iter().flatten().next() {
+            Some(complaint) => Err(GpuError::failed(doing, complaint)),
+            None => Ok(made),
+        }
+    }
+}

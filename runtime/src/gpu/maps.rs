@@ -1,0 +1,160 @@
+//! The maps as textures: per page one array of rise and one of fall times, a slice for each layer of each lane.
+
+use super::device::{Gpu, GpuError};
+use std::borrow::Cow;
+use sunbake::maps::{Bits, PageMaps};
+use sunbake_shaders::PageVariant;
+
+/// A page's textures and how programs read them. None where the page has neither a sun nor ambient occlusion.
+pub struct PageTextures {
+    /// What programs must know of the page.
+    pub variant: PageVariant,
+    /// The layout of its bindings.
+    pub layout: Option<wgpu::BindGroupLayout>,
+    /// Its bindings.
+    pub bind_group: Option<wgpu::BindGroup>,
+    /// Textures with stored times.
+    pub time_textures: usize,
+    /// Bytes of all of its textures.
+    pub bytes: u64,
+}
+
+impl PageTextures {
+    /// Uploads a page.
+    pub fn new(gpu: &Gpu, maps: &PageMaps, bits: Bits, variant: PageVariant) -> Result<Self, GpuError> {
+        let limits = gpu.device.limits();
+        let edge = u64::from(maps.width.max(maps.height));
+        GpuError::check_limit("the longer edge of a page", edge, u64::from(limits.max_texture_dimension_2d))?;
+        let layers = variant.layer_count();
+        let limit = u64::from(limits.max_texture_array_layers);
+        GpuError::check_limit("the number of a page's layers", u64::from(layers), limit)?;
+        let mut bindings: Vec<(u32, wgpu::TextureView, wgpu::TextureViewDimension)> = Vec::new();
+        let mut bytes = 0;
+        if layers > 0 {
+            let all = || maps.lanes.iter().flat_map(|lane| &lane.layers);
+            let rise = times(gpu, maps, bits, layers, all().map(|layer| layer.rise.as_slice()));
+            let fall = times(gpu, maps, bits, layers, all().map(|layer| layer.fall.as_slice()));
+            bindings.push((0, rise, wgpu::TextureViewDimension::D2Array));
+            bindings.push((1, fall, wgpu::TextureViewDimension::D2Array));
+            bytes += maps.texel_count() * u64::from(layers) * u64::from(bits.count());
+        }
+        if let Some(ao) = &maps.ao {
+            bindings.push((2, openness(gpu, maps, ao), wgpu::TextureViewDimension::D2));
+            bytes += maps.texel_count() * 2;
+        }
+        let time_textures = if layers > 0 { 2 } else { 0 };
+        let (layout, bind_group) = bound(gpu, &bindings).unzip();
+        Ok(Self { variant, layout, bind_group, time_textures, bytes })
+    }
+}
+
+trait TexelCount {
+    fn texel_count(&self) -> u64;
+}
+
+impl TexelCount for PageMaps {
+    fn texel_count(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+}
+
+fn bound(
+    gpu: &Gpu,
+    bindings: &[(u32, wgpu::TextureView, wgpu::TextureViewDimension)],
+) -> Option<(wgpu::BindGroupLayout, wgpu::BindGroup)> {
+    if bindings.is_empty() {
+        return None;
+    }
+    let layout_entries: Vec<_> = bindings
+        .iter()
+        .map(|&(binding, _, view_dimension)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Uint,
+                view_dimension,
+                multisampled: false,
+            },
+            count: None,
+        })
+        .collect();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("page"), entries: &layout_entries };
+    let layout = gpu.device.create_bind_group_layout(&descriptor);
+    let entries: Vec<_> = bindings
+        .iter()
+        .map(|(binding, view, _)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: wgpu::BindingResource::TextureView(view),
+        })
+        .collect();
+    let descriptor = wgpu::BindGroupDescriptor { label: Some("page"), layout: &layout, entries: &entries };
+    let group = gpu.device.create_bind_group(&descriptor);
+    Some((layout, group))
+}
+
+fn times<'a>(
+    gpu: &Gpu,
+    maps: &PageMaps,
+    bits: Bits,
+    layers: u32,
+    slices: impl Iterator<Item = &'a [[u16; 4]]>,
+) -> wgpu::TextureView {
+    let format = match bits {
+        Bits::Eight => wgpu::TextureFormat::Rgba8Uint,
+        Bits::Sixteen => wgpu::TextureFormat::Rgba16Uint,
+    };
+    let texture = texture(gpu, "times", [maps.width, maps.height], layers, format);
+    for (layer, codes) in slices.enumerate() {
+        let bytes: Cow<[u8]> = match bits {
+            Bits::Eight => codes.iter().flatten().map(|&code| code as u8).collect(),
+            Bits::Sixteen => Cow::Borrowed(bytemuck::cast_slice(codes)),
+        };
+        upload(gpu, &texture, 0, layer as u32, [maps.width, maps.height], bits.count() / 2, &bytes);
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+fn openness(gpu: &Gpu, maps: &PageMaps, ao: &[u16]) -> wgpu::TextureView {
+    let size = [maps.width, maps.height];
+    let texture = texture(gpu, "ambient occlusion", size, 1, wgpu::TextureFormat::R16Uint);
+    upload(gpu, &texture, 0, 0, size, 2, bytemuck::cast_slice(ao));
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+fn texture(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+/// Writes one level of one array slice.
+pub(super) fn upload(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    level: u32,
+    slice: u32,
+    [width, height]: [u32; 2],
+    texel_bytes: u32,
+    bytes: &[u8],
+) {
+    let place = wgpu::TexelCopyTextureInfo {
+        texture,
+        mip_level: level,
+        origin: wgpu::Origin3d { x: 0, y: 0, z: slice },
+        aspect: wgpu::TextureAspect::All,
+    };
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * texel_bytes), rows_per_image: None };
+    let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+    gpu.queue.write_texture(place, bytes, layout, extent);
+}

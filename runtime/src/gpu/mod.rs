@@ -1,0 +1,22 @@
+//! Playback on the GPU, without a window.
+//!
+//! Built once per stage: vertex streams, one texture pair a page, base colour textures, one pipeline per variant that
+//! occurs ([`Program`]). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
+//! visibility). Depth is reversed and infinite, `Depth32Float`; the second pass draws where depths are equal, so that
+//! each pixel is lit once.
+//!
+//! What the scene does not call for is not built: [`Census`] counts, and a test holds the counts against scenes.
+
+mod batch;
+mod census;
+mod device;
+mod maps;
+mod program;
+mod readback;
+mod renderer;
+mod target;
+mod textures;
+
+pub use census::Census;
+pub use device::{Gpu, GpuError};
+pub use renderer::{Output, Renderer};

@@ -1,0 +1,39 @@
+//! Pictures back from the GPU: rows are copied at multiples of 256 bytes, and the padding dropped.
+
+use super::device::{Gpu, GpuError};
+use super::target::Target;
+
+/// The picture's floats, `channels` a pixel, in row order.
+pub fn read(
+    gpu: &Gpu,
+    target: &Target,
+    channels: u32,
+    mut encoder: wgpu::CommandEncoder,
+) -> Result<Vec<f32>, GpuError> {
+    let [width, height] = target.size;
+    let row_bytes = width * channels * 4;
+    let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size: u64::from(padded_bytes) * u64::from(height),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_bytes), rows_per_image: Some(height) };
+    encoder.copy_texture_to_buffer(
+        target.picture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let (sender, receiver) = std::sync::mpsc::channel();
+    // The receiver outlives the callback, so sending cannot fail.
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
+    let wrong = |e: &dyn std::fmt::Display| GpuError::failed("reading a picture back", e);
+    gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| wrong(&e))?;
+    receiver.recv().map_err(|e| wrong(&e))?.map_err(|e| wrong(&e))?;
+    let mapped = buffer.get_mapped_range(..).map_err(|e| wrong(&e))?;
+    let rows = mapped.chunks_exact(padded_bytes as usize);
+    Ok(rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..row_bytes as usize])).collect())
+}

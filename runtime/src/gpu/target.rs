@@ -1,0 +1,47 @@
+//! What is drawn into: made when a size is first asked for, kept until another is.
+
+use super::device::{Gpu, GpuError};
+
+/// Format of lit pictures: linear light, as precise as the CPU's.
+pub const LIT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Format of visibility pictures.
+pub const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Format of depths.
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A picture and its depths.
+pub struct Target {
+    /// In pixels.
+    pub size: [u32; 2],
+    /// What is read back.
+    pub picture: wgpu::Texture,
+    /// The same, to draw into.
+    pub view: wgpu::TextureView,
+    /// Depths.
+    pub depth: wgpu::TextureView,
+}
+
+impl Target {
+    /// A picture of a size and format.
+    pub fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+        let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
+        GpuError::check_limit("the longer edge of the picture", u64::from(size[0].max(size[1])), limit)?;
+        let make = |label, format, usage| {
+            gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            })
+        };
+        let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let picture = make("picture", format, drawn | wgpu::TextureUsages::COPY_SRC);
+        let depth = make("depth", DEPTH_FORMAT, drawn);
+        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Ok(Self { size, view: view(&picture), depth: view(&depth), picture })
+    }
+}

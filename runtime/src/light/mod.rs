@@ -1,0 +1,211 @@
+//! Light at a moment of the day: where the sun stands, and a simple sky to go with it.
+//!
+//! **Sun.** Its colour is what the air lets through: `exp(-depth * air mass)` for red, green and blue, the air mass after
+//! Kasten and Young ("Revised optical air mass tables and approximation formula", *Applied Optics* 28, 1989), the depths
+//! those of clear air with a little dust.
+//!
+//! **Brightness.** A noon is some thousand times brighter than a dusk. The eye follows, a picture with a fixed exposure
+//! cannot: the sun's brightness is therefore compressed by a power ([`ADAPTATION`]), and all light is lifted as what level
+//! ground receives falls ([`EYE`]), as if the eye had gone part of the way.
+//!
+//! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
+//! is measured: it is there so that the shadows under study fall in a believable light.
+
+mod sky;
+mod tone;
+
+pub use tone::{codes_from_display, display_from_light};
+
+use crate::camera::View;
+use glam::Vec3;
+use sunbake::sun::SunPath;
+use sunbake_shaders::FrameUniform;
+
+/// Optical depth of the air straight up, for red, green and blue.
+const AIR_DEPTH: Vec3 = Vec3::new(0.10, 0.165, 0.31);
+/// Power by which brightness is compressed.
+const ADAPTATION: f32 = 0.42;
+/// Power by which all light is lifted as the light on level ground falls below [`NOON_LIGHT`].
+const EYE: f32 = 0.38;
+/// Luminance of the light on level ground under a high sun.
+const NOON_LIGHT: f32 = 1.9;
+/// What a surface sends back of the light that reaches it, for the ground's glow.
+const GROUND_ALBEDO: Vec3 = Vec3::new(0.36, 0.31, 0.25);
+/// Weights of red, green and blue in luminance (ITU-R BT.709).
+pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
+
+/// A moment of the day, as a frame needs it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// Path time.
+    pub t: f32,
+    /// The sun's width in path time; 0 without a sun.
+    pub width_t: f32,
+    /// Unit vector towards the sun; zero without a sun.
+    pub sun_direction: Vec3,
+    /// Angular radius of the sun's disc.
+    pub sun_radius_rad: f32,
+    /// One over the sun's angular diameter; very large for a point.
+    pub discs_per_radian: f32,
+    /// The light.
+    pub daylight: Daylight,
+}
+
+/// Light and its colours, linear.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Daylight {
+    /// The sun on a surface that faces it.
+    pub sun_light: Vec3,
+    /// The sky on a surface that looks up.
+    pub sky_light: Vec3,
+    /// The ground on a surface that looks down.
+    pub ground_light: Vec3,
+    /// The sky's colour overhead.
+    pub zenith: Vec3,
+    /// The sky's colour at the horizon.
+    pub horizon: Vec3,
+    /// What the sky has more of around the sun.
+    pub glow: Vec3,
+    /// What is seen below the horizon where there is no ground.
+    pub haze: Vec3,
+}
+
+impl Moment {
+    /// The moment `t` of a path; without a path, a dusk in which nothing is lit by the sun.
+    pub fn new(path: Option<&SunPath>, t: f64) -> Self {
+        let Some(path) = path else {
+            let daylight = Daylight { sun_light: Vec3::ZERO, glow: Vec3::ZERO, ..Daylight::at_height(-0.1) };
+            return Self {
+                t: t as f32,
+                width_t: 0.0,
+                sun_direction: Vec3::ZERO,
+                sun_radius_rad: 0.0,
+                discs_per_radian: POINT,
+                daylight,
+            };
+        };
+        let direction = path.direction(t);
+        let radius = path.angular_radius_rad;
+        Self {
+            t: t as f32,
+            width_t: path.width_t(t) as f32,
+            sun_direction: direction.as_vec3(),
+            sun_radius_rad: radius as f32,
+            discs_per_radian: if radius > 0.0 { (0.5 / radius) as f32 } else { POINT },
+            daylight: Daylight::at_height(direction.y as f32),
+        }
+    }
+
+    /// What the GPU needs to know of a view at this moment.
+    pub fn uniform(&self, view: &View) -> FrameUniform {
+        let light = &self.daylight;
+        FrameUniform {
+            clip_from_eye: view.clip_from_eye().to_cols_array_2d(),
+            eye_m: view.eye_m.into(),
+            pixel_angle_rad: view.pixel_angle_rad,
+            ray_first: view.ray_first.into(),
+            t: self.t,
+            ray_per_column: view.ray_per_column.into(),
+            width_t: self.width_t,
+            ray_per_row: view.ray_per_row.into(),
+            sun_cos_radius: self.sun_cos_radius(),
+            sun_direction: self.sun_direction.into(),
+            discs_per_radian: self.discs_per_radian,
+            sun_light: light.sun_light.into(),
+            sky_light: light.sky_light.into(),
+            ground_light: light.ground_light.into(),
+            zenith: light.zenith.into(),
+            horizon: light.horizon.into(),
+            glow: light.glow.into(),
+            haze: light.haze.into(),
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
+    fn sun_cos_radius(&self) -> f32 {
+        if self.sun_radius_rad > 0.0 { self.sun_radius_rad.cos() } else { 2.0 }
+    }
+}
+
+/// Discs a radian of a sun that is a point: any side of a plane is wholly before or behind it.
+const POINT: f32 = 1e9;
+
+impl Daylight {
+    /// Light when the sine of the sun's elevation is `height`.
+    pub fn at_height(height: f32) -> Self {
+        let up = height.clamp(0.0, 1.0);
+        let through = (AIR_DEPTH * -air_mass(height)).exp();
+        let strength = through.dot(LUMINANCE);
+        let tint = soften(through / strength.max(1e-9));
+        let sun_light = tint * (1.65 * strength.powf(ADAPTATION));
+        // Below the horizon the sky goes on darkening through twilight.
+        let dusk = (1.0 + height.min(0.0) * 6.0).clamp(0.05, 1.0);
+        let level = (0.15 + 0.27 * up.sqrt()) * dusk;
+        let warmth = (-up * 6.0).exp();
+        let sky_light = Vec3::new(0.66, 0.80, 1.0).lerp(Vec3::new(0.84, 0.74, 0.90), warmth) * level;
+        let ground_light = GROUND_ALBEDO * (sun_light * up + sky_light);
+        let horizon = Vec3::new(1.05, 1.25, 1.42).lerp(Vec3::new(2.1, 1.22, 0.78), warmth) * (level * 1.25);
+        let light = Self {
+            sun_light,
+            sky_light,
+            ground_light,
+            zenith: Vec3::new(0.26, 0.55, 1.22).lerp(Vec3::new(0.40, 0.56, 1.05), warmth) * level,
+            horizon,
+            glow: tint * (1.0 * strength.powf(0.30) * dusk),
+            haze: horizon * 0.45 + ground_light * 0.35,
+        };
+        light.exposed_for((sun_light * up + sky_light).dot(LUMINANCE))
+    }
+
+    /// The same light, seen by an eye that has got used to what level ground receives.
+    fn exposed_for(self, on_level_ground: f32) -> Self {
+        let gain = (NOON_LIGHT / on_level_ground.max(0.02)).powf(EYE).max(1.0);
+        Self {
+            sun_light: self.sun_light * gain,
+            sky_light: self.sky_light * gain,
+            ground_light: self.ground_light * gain,
+            zenith: self.zenith * gain,
+            horizon: self.horizon * gain,
+            glow: self.glow * gain,
+            haze: self.haze * gain,
+        }
+    }
+}
+
+/// Keeps a low sun orange where the air alone would leave it a pure red that no display can show.
+fn soften(tint: Vec3) -> Vec3 {
+    let soft = tint.powf(0.72);
+    soft / soft.dot(LUMINANCE)
+}
+
+/// How much more air there is in the sun's way than straight up; `height` is the sine of its elevation.
+fn air_mass(height: f32) -> f32 {
+    let elevation_deg = height.clamp(0.0, 1.0).asin().to_degrees();
+    1.0 / (height.max(0.0) + 0.505_72 * (elevation_deg + 6.079_95).powf(-1.636_4))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn air_mass_is_one_overhead_and_38_at_the_horizon() {
+        assert!((air_mass(1.0) - 1.0).abs() < 1e-3 && (air_mass(0.0) - 37.92).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_low_sun_is_dimmer_and_redder_than_a_high_one() {
+        let [low, high] = [0.05, 0.9].map(Daylight::at_height);
+        assert!(low.sun_light.dot(LUMINANCE) < high.sun_light.dot(LUMINANCE));
+        assert!(low.sun_light.x / low.sun_light.z > 2.0 * high.sun_light.x / high.sun_light.z);
+    }
+
+    #[test]
+    fn every_height_gives_finite_light() {
+        for i in -100..=100 {
+            let d = Daylight::at_height(i as f32 / 100.0);
+            let all = [d.sun_light, d.sky_light, d.ground_light, d.zenith, d.horizon, d.glow, d.haze];
+            assert!(all.iter().all(|c| c.is_finite() && c.min_element() >= 0.0), "{d:?}");
+        }
+    }
+}

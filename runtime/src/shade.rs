@@ -1,0 +1,69 @@
+//! Lit pictures on the CPU, from any technique's visibility: twin of `lit_fragment.wgsl` and `shade.wgsl`.
+
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::playback::Page;
+use crate::shot::Shot;
+use crate::stage::{Corners, Stage};
+use glam::{Vec3, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+use sunbake::scene::Material;
+use sunbake::scene::alpha::blend;
+use sunbake::trace::Hit;
+
+/// Linear light of every pixel, given how much of the sun each sees.
+pub fn lit_picture(shot: &Shot, moment: &Moment, visibility: &Raster<f32>) -> Raster<Vec3> {
+    let pages: Vec<Page> = shot.stage.pages.iter().map(|maps| Page::new(maps, shot.stage.bits, 0.0)).collect();
+    let light = |(pixel, hit): (usize, &Option<Hit>)| match hit {
+        None => moment.sky_color(shot.ray(pixel).normalize()),
+        Some(hit) => lit_surface(shot, moment, &pages, pixel, hit, visibility.pixels[pixel]),
+    };
+    let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(light).collect();
+    Raster { size: shot.view.size, pixels }
+}
+
+fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: &Hit, visibility: f32) -> Vec3 {
+    let stage = shot.stage;
+    let triangle = hit.triangle as usize;
+    let ray = shot.ray(pixel);
+    let material = stage.material(triangle);
+    let corners = stage.corners(triangle);
+    let weights = hit.barycentric.map(|b| b as f32);
+    let front = stage.geometry.normal(triangle).as_vec3();
+    let texture = texture_color(shot, &corners, hit, front, ray);
+    let base_color = material.base_color * blend(corners.color, weights) * texture;
+    let normal = towards_eye(blend(corners.normal, weights).normalize_or(front), front, ray);
+    let open = match stage.chart(stage.geometry.instance[triangle] as usize) {
+        Some(chart) => pages[chart.page as usize].openness(blend(corners.page_uv, weights)),
+        None => 1.0,
+    };
+    shade(material, base_color.xyz(), normal, moment, visibility, open)
+}
+
+/// A normal turned to the side that the eye is on.
+pub fn towards_eye(normal: Vec3, front: Vec3, ray: Vec3) -> Vec3 {
+    if front.dot(ray) > 0.0 { -normal } else { normal }
+}
+
+fn texture_color(shot: &Shot, corners: &Corners, hit: &Hit, front: Vec3, ray: Vec3) -> Vec4 {
+    let stage: &Stage = shot.stage;
+    let triangle = hit.triangle as usize;
+    let Some(texture) = stage.material(triangle).base_color_texture else { return Vec4::ONE };
+    let Some(mips) = stage.mips(texture.image) else { return Vec4::ONE };
+    let slant = front.dot(ray.normalize()).abs().max(0.01);
+    let texels_per_metre = stage.texels_per_metre(triangle, corners.image_uv);
+    let texels = texels_per_metre * hit.distance_m as f32 * shot.view.pixel_angle_rad / slant.sqrt();
+    let image_uv = blend(corners.image_uv, hit.barycentric.map(|b| b as f32));
+    mips.sample(image_uv, texels.max(1.0).log2(), texture.wrap)
+}
+
+/// Light on a matt surface: the sun so far as it is seen, a sky above, the ground's glow from below.
+fn shade(material: &Material, base_color: Vec3, normal: Vec3, moment: &Moment, visibility: f32, open: f32) -> Vec3 {
+    if material.is_unlit {
+        return base_color + material.emissive;
+    }
+    let light = &moment.daylight;
+    let sun = light.sun_light * (visibility * normal.dot(moment.sun_direction).max(0.0));
+    let sky = light.ground_light.lerp(light.sky_light, 0.5 + 0.5 * normal.y) * open;
+    base_color * (sun + sky) + material.emissive
+}

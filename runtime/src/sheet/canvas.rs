@@ -1,0 +1,75 @@
+//! A picture to put pictures and words on.
+
+use super::font::{CELL, glyph, text_width};
+use crate::image::Raster;
+use crate::light::codes_from_display;
+use crate::texture::linear_from_srgb;
+use glam::Vec3;
+
+/// Background of sheets.
+pub const PAPER: [u8; 3] = [24, 24, 26];
+/// Words.
+pub const INK: [u8; 3] = [236, 232, 224];
+/// Words of less weight.
+pub const QUIET_INK: [u8; 3] = [156, 152, 146];
+
+/// A sheet in the making.
+pub struct Canvas {
+    picture: Raster<[u8; 3]>,
+}
+
+impl Canvas {
+    /// An empty sheet.
+    pub fn new(size: [u32; 2]) -> Self {
+        Self { picture: Raster::filled(size, PAPER) }
+    }
+
+    /// The finished sheet.
+    pub fn finish(self) -> Raster<[u8; 3]> {
+        self.picture
+    }
+
+    /// Fills a rectangle; what lies outside the sheet is left out.
+    pub fn rectangle(&mut self, [x, y]: [u32; 2], [width, height]: [u32; 2], color: [u8; 3]) {
+        let [sheet_width, sheet_height] = self.picture.size;
+        for row in y..(y + height).min(sheet_height) {
+            for column in x..(x + width).min(sheet_width) {
+                self.picture.pixels[row as usize * sheet_width as usize + column as usize] = color;
+            }
+        }
+    }
+
+    /// Puts a picture down by its upper left corner.
+    pub fn picture(&mut self, [x, y]: [u32; 2], picture: &Raster<[u8; 3]>) {
+        for row in 0..picture.size[1] {
+            for column in 0..picture.size[0] {
+                self.rectangle([x + column, y + row], [1, 1], *picture.at(column, row));
+            }
+        }
+    }
+
+    /// Writes a line of words, `scale` pixels to each of the font's.
+    pub fn text(&mut self, [x, y]: [u32; 2], text: &str, scale: u32, ink: [u8; 3]) {
+        for (i, character) in text.chars().enumerate() {
+            let left = x + i as u32 * (CELL[0] + 1) * scale;
+            for (column, bits) in glyph(character).into_iter().enumerate() {
+                for row in (0..CELL[1]).filter(|row| bits >> row & 1 == 1) {
+                    self.rectangle([left + column as u32 * scale, y + row * scale], [scale, scale], ink);
+                }
+            }
+        }
+    }
+
+    /// Writes a line of words around a middle.
+    pub fn text_centred(&mut self, [middle, y]: [u32; 2], text: &str, scale: u32, ink: [u8; 3]) {
+        self.text([middle.saturating_sub(text_width(text, scale) / 2), y], text, scale, ink);
+    }
+}
+
+/// A picture made smaller by a whole number, so that it is no wider than `width`. Light is averaged, not codes.
+pub fn thumbnail(picture: &Raster<[u8; 3]>, width: u32) -> Raster<[u8; 3]> {
+    let shrink = picture.size[0].div_ceil(width.max(1)).min(picture.size[1]).max(1);
+    let light = |code: &[u8; 3]| Vec3::from_array(code.map(linear_from_srgb));
+    let display = Raster { size: picture.size, pixels: picture.pixels.iter().map(light).collect() }.reduced(shrink);
+    Raster { size: display.size, pixels: display.pixels.iter().map(|&d| codes_from_display(d)).collect() }
+}

@@ -1,0 +1,238 @@
+//! A baked set and its scene, joined: what every technique draws.
+
+use crate::sides::{Sides, sides};
+use crate::texture::MipChain;
+use glam::{DMat3, Vec2, Vec3, Vec4};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::OnceLock;
+use sunbake::disk::manifest::InstanceEntry;
+use sunbake::maps::{Bits, PageMaps};
+use sunbake::scene::alpha::{blend, image_uvs};
+use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene};
+use sunbake::sun::SunPath;
+use sunbake::trace::{Direction, Hit, Tracer};
+
+/// Memory that a set's own scene may take: what was baked was read once already.
+const MAX_SCENE_BYTES: u64 = 16 << 30;
+
+/// What is drawn, and the maps that light it.
+pub struct Stage {
+    /// The scene.
+    pub scene: Scene,
+    /// Its triangles in bake space.
+    pub geometry: Geometry,
+    /// Depth of stored times.
+    pub bits: Bits,
+    /// The maps, page by page.
+    pub pages: Vec<PageMaps>,
+    /// The sun's path; none where it does not rise.
+    pub path: Option<SunPath>,
+    /// For each instance, where its texels lie; none where it has none (and is not drawn).
+    charts: Vec<Option<Chart>>,
+    /// For each instance, unit shading normals in bake space from those in object space.
+    normal_from_object: Vec<DMat3>,
+    /// For each triangle, the sides that are drawn.
+    sides: Vec<Sides>,
+    /// For each image, its levels of detail, if a material draws it as a base colour.
+    mips: Vec<Option<MipChain>>,
+    /// Built when first asked for: drawing on the GPU needs none.
+    tracer: OnceLock<Tracer>,
+}
+
+/// Where an instance's texels lie: `page_uv = texcoords[uv_set] * scale + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chart {
+    /// Index in [`Stage::pages`].
+    pub page: u32,
+    /// 0 or 1: which of [`Mesh::texcoords`].
+    pub uv_set: usize,
+    /// In page coordinates.
+    pub scale: Vec2,
+    /// In page coordinates.
+    pub offset: Vec2,
+}
+
+/// What the three corners of a triangle carry.
+#[derive(Debug, Clone, Copy)]
+pub struct Corners {
+    /// Page coordinates of the maps.
+    pub page_uv: [Vec2; 3],
+    /// Coordinates of the base colour texture; zero where there is none.
+    pub image_uv: [Vec2; 3],
+    /// Unit shading normals, bake space.
+    pub normal: [Vec3; 3],
+    /// Vertex colours; white where there are none.
+    pub color: [Vec4; 3],
+}
+
+/// Why a set cannot be staged.
+#[derive(Debug, thiserror::Error)]
+pub enum StageError {
+    /// The folder is no baked set.
+    #[error(transparent)]
+    Set(#[from] sunbake::disk::read::ReadError),
+    /// The set's scene cannot be read.
+    #[error("the set's scene cannot be read: {0}")]
+    Scene(#[from] LoadError),
+    /// The manifest and the scene do not agree.
+    #[error("the set's scene and its manifest disagree: {reason}; bake the scene again")]
+    Mismatch {
+        /// About what.
+        reason: String,
+    },
+}
+
+impl Stage {
+    /// Reads a baked set and its scene.
+    pub fn read(folder: &Path) -> Result<Self, StageError> {
+        let set = sunbake::disk::read::read(folder)?;
+        let scene = sunbake::scene::load(&set.scene_file(), &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+        Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)
+    }
+
+    /// Joins a scene with what was baked for it.
+    pub fn new(
+        scene: Scene,
+        instances: &[InstanceEntry],
+        pages: Vec<PageMaps>,
+        bits: Bits,
+        path: Option<SunPath>,
+    ) -> Result<Self, StageError> {
+        let charts = charts(&scene, instances, pages.len())?;
+        let normal_from_object =
+            scene.instances.iter().map(|i| DMat3::from_mat4(i.bake_from_object).inverse().transpose()).collect();
+        let geometry = Geometry::new(&scene);
+        let is_drawn = |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Air;
+        let sides = sides(&scene, &geometry, is_drawn);
+        let mips = mips(&scene);
+        let tracer = OnceLock::new();
+        Ok(Self { scene, geometry, bits, pages, path, charts, normal_from_object, sides, mips, tracer })
+    }
+
+    /// The scene made ready for rays.
+    pub fn tracer(&self) -> &Tracer {
+        self.tracer.get_or_init(|| Tracer::new(&self.scene, &self.geometry))
+    }
+
+    /// Where an instance's texels lie.
+    pub fn chart(&self, instance: usize) -> Option<&Chart> {
+        self.charts[instance].as_ref()
+    }
+
+    /// Levels of detail of an image that some material draws.
+    pub fn mips(&self, image: usize) -> Option<&MipChain> {
+        self.mips[image].as_ref()
+    }
+
+    /// The mesh of an instance.
+    pub fn mesh(&self, instance: usize) -> &Mesh {
+        &self.scene.meshes[self.scene.instances[instance].mesh]
+    }
+
+    /// The sides of a triangle that are drawn: neither, if it has no texels or nothing of it can be seen.
+    pub fn sides(&self, triangle: usize) -> Sides {
+        self.sides[triangle]
+    }
+
+    /// What the corners of a triangle carry.
+    pub fn corners(&self, triangle: usize) -> Corners {
+        let surface = self.geometry.surface(triangle);
+        let mesh = self.mesh(surface.instance);
+        let material = self.scene.material(surface.instance);
+        let vertices = [0, 1, 2].map(|k| mesh.indices[3 * surface.mesh_triangle + k] as usize);
+        let front = self.geometry.normal(triangle).as_vec3();
+        Corners {
+            page_uv: self.page_uvs(surface.instance, mesh, vertices),
+            image_uv: match &material.base_color_texture {
+                Some(texture) => image_uvs(mesh, texture, surface.mesh_triangle),
+                None => [Vec2::ZERO; 3],
+            },
+            normal: match &mesh.normals {
+                Some(normals) => vertices.map(|v| self.shading_normal(surface.instance, normals[v], front)),
+                None => [front; 3],
+            },
+            color: mesh.colors.as_ref().map_or([Vec4::ONE; 3], |colors| vertices.map(|v| colors[v])),
+        }
+    }
+
+    fn page_uvs(&self, instance: usize, mesh: &Mesh, vertices: [usize; 3]) -> [Vec2; 3] {
+        match (&self.charts[instance], self.charts[instance].and_then(|c| mesh.texcoords[c.uv_set].as_ref())) {
+            (Some(chart), Some(uvs)) => vertices.map(|v| uvs[v] * chart.scale + chart.offset),
+            _ => [Vec2::ZERO; 3],
+        }
+    }
+
+    fn shading_normal(&self, instance: usize, object: Vec3, front: Vec3) -> Vec3 {
+        let normal = (self.normal_from_object[instance] * object.as_dvec3()).normalize_or_zero();
+        if normal == glam::DVec3::ZERO { front } else { normal.as_vec3() }
+    }
+
+    /// Texels of the base colour texture a metre of a triangle: the square root of the ratio of their areas.
+    pub fn texels_per_metre(&self, triangle: usize, image_uv: [Vec2; 3]) -> f32 {
+        let instance = self.geometry.instance[triangle] as usize;
+        let Some(texture) = self.scene.material(instance).base_color_texture else { return 0.0 };
+        let image = &self.scene.images[texture.image];
+        let size = Vec2::new(image.width as f32, image.height as f32);
+        let [a, b, c] = image_uv.map(|uv| uv * size);
+        let [p, q, r] = self.geometry.triangles[triangle].map(|v| v.as_dvec3());
+        let texels = f64::from((b - a).perp_dot(c - a).abs());
+        (texels / (q - p).cross(r - p).length().max(f64::MIN_POSITIVE)).sqrt().min(1e12) as f32
+    }
+
+    /// What a primary ray sees: the nearest surface that is drawn and that turns a visible side to the eye.
+    pub fn see(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
+        let direction = direction.normalize();
+        self.tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
+            let sides = self.sides[triangle as usize];
+            match sides.front == sides.back {
+                true => sides.front,
+                false => (self.geometry.normal(triangle as usize).dot(direction) < 0.0) == sides.front,
+            }
+        })
+    }
+
+    /// The material of a triangle.
+    pub fn material(&self, triangle: usize) -> &Material {
+        self.scene.material(self.geometry.instance[triangle] as usize)
+    }
+
+    /// Page coordinates of a hit, and its page.
+    pub fn page_uv(&self, hit: &Hit) -> Option<(u32, Vec2)> {
+        let triangle = hit.triangle as usize;
+        let chart = self.charts[self.geometry.instance[triangle] as usize]?;
+        Some((chart.page, blend(self.corners(triangle).page_uv, hit.barycentric.map(|b| b as f32))))
+    }
+}
+
+fn charts(scene: &Scene, entries: &[InstanceEntry], page_count: usize) -> Result<Vec<Option<Chart>>, StageError> {
+    let by_place: HashMap<(usize, usize), &InstanceEntry> =
+        entries.iter().map(|e| ((e.node, e.primitive), e)).collect();
+    let mismatch = |reason: String| StageError::Mismatch { reason };
+    let chart = |instance: &sunbake::scene::Instance| {
+        let mesh = &scene.meshes[instance.mesh];
+        let place = (instance.node, mesh.gltf.1);
+        let entry = by_place
+            .get(&place)
+            .ok_or_else(|| mismatch(format!("nothing is said of node {}, primitive {}", place.0, place.1)))?;
+        let Some(page) = entry.atlas else { return Ok(None) };
+        let uv_set = entry.uv_set as usize;
+        let has_uvs = mesh.texcoords.get(uv_set).is_some_and(Option::is_some);
+        if !has_uvs || page as usize >= page_count {
+            let what = format!("node {}, primitive {} has no TEXCOORD_{uv_set} or no page {page}", place.0, place.1);
+            return Err(mismatch(what));
+        }
+        Ok(Some(Chart { page, uv_set, scale: entry.uv_scale.into(), offset: entry.uv_offset.into() }))
+    };
+    scene.instances.iter().map(chart).collect()
+}
+
+fn mips(scene: &Scene) -> Vec<Option<MipChain>> {
+    let mut mips: Vec<Option<MipChain>> = scene.images.iter().map(|_| None).collect();
+    for instance in 0..scene.instances.len() {
+        if let Some(texture) = scene.material(instance).base_color_texture {
+            mips[texture.image].get_or_insert_with(|| MipChain::new(&scene.images[texture.image]));
+        }
+    }
+    mips
+}

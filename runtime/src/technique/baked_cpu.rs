@@ -1,0 +1,65 @@
+//! Baked maps, evaluated on the CPU: the twin of [`super::BakedGpu`], and its stand-in where there is no GPU.
+//!
+//! One primary ray a pixel and one evaluation of the maps. Wrong where the maps are: by their codes' step, by a texel's
+//! size, and where the sun's disc is not a line along its path.
+
+use super::Technique;
+use crate::gpu::GpuError;
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::playback::Page;
+use crate::shade::towards_eye;
+use crate::shot::Shot;
+use crate::stage::Stage;
+use rayon::prelude::*;
+use sunbake::trace::Hit;
+use sunbake_shaders::Filter;
+
+/// Baked maps on the CPU.
+pub struct BakedCpu<'a> {
+    stage: &'a Stage,
+    pages: Vec<Page<'a>>,
+    filter: Filter,
+}
+
+impl<'a> BakedCpu<'a> {
+    /// Prepares the maps of a stage.
+    pub fn new(stage: &'a Stage, filter: Filter) -> Self {
+        let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
+        let pages = stage.pages.iter().map(|maps| Page::new(maps, stage.bits, radius_rad)).collect();
+        Self { stage, pages, filter }
+    }
+
+    fn seen(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {
+        let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
+        let front = self.stage.geometry.normal(hit.triangle as usize).as_vec3();
+        let face = towards_eye(front, front, shot.ray(pixel));
+        self.pages[page as usize].sun_visibility(page_uv, face, self.filter, moment)
+    }
+}
+
+impl Technique for BakedCpu<'_> {
+    fn name(&self) -> String {
+        "baked".into()
+    }
+
+    fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        let hits = shot.hits().par_iter().enumerate().with_min_len(64);
+        let seen = hits.map(|(pixel, hit)| hit.map_or(1.0, |hit| self.seen(shot, pixel, &hit, moment)));
+        Ok(Raster { size: shot.view.size, pixels: seen.collect() })
+    }
+
+    fn bytes(&self) -> u64 {
+        map_bytes(self.stage)
+    }
+}
+
+/// Bytes of the maps of a stage, as a GPU holds them.
+pub(super) fn map_bytes(stage: &Stage) -> u64 {
+    let texel_bytes = |page: &sunbake::maps::PageMaps| {
+        let layers: usize = page.lanes.iter().map(|lane| lane.layers.len()).sum();
+        let layer_bytes = u64::from(stage.bits.count()) / 8 * 4 * 2;
+        layers as u64 * layer_bytes + if page.ao.is_some() { 2 } else { 0 }
+    };
+    stage.pages.iter().map(|page| u64::from(page.width) * u64::from(page.height) * texel_bytes(page)).sum()
+}

@@ -1,0 +1,48 @@
+//! Baked maps, evaluated on the GPU.
+//!
+//! Passes: depth, then one that evaluates the maps where it lights. Targets: a picture and its depths. Cost: the maps'
+//! bytes, and for each pixel four texels of two textures a layer. Wrong where [`super::BakedCpu`] is, and within a
+//! rounding of it elsewhere.
+
+use super::Technique;
+use crate::gpu::{Census, Gpu, GpuError, Renderer};
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::shot::Shot;
+use crate::stage::Stage;
+use glam::Vec3;
+use sunbake_shaders::Filter;
+
+/// Baked maps on the GPU.
+pub struct BakedGpu<'g> {
+    renderer: Renderer<'g>,
+}
+
+impl<'g> BakedGpu<'g> {
+    /// Uploads a stage.
+    pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
+        Ok(Self { renderer: Renderer::new(gpu, stage, filter)? })
+    }
+}
+
+impl Technique for BakedGpu<'_> {
+    fn name(&self) -> String {
+        "baked".into()
+    }
+
+    fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.visibility(&shot.view, moment)? })
+    }
+
+    fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.lit(&shot.view, moment)? })
+    }
+
+    fn bytes(&self) -> u64 {
+        self.renderer.census().map_bytes
+    }
+
+    fn census(&self) -> Option<Census> {
+        Some(self.renderer.census())
+    }
+}

@@ -1,0 +1,42 @@
+//! Ways to know how much of the sun a pixel's surface sees.
+//!
+//! All answer with the same image, visibility from 0 to 1 where pixels without a surface read 1, so all are compared
+//! alike. What each costs and where it is wrong is said in its own file.
+
+mod baked_cpu;
+mod baked_gpu;
+mod truth;
+
+pub use baked_cpu::BakedCpu;
+pub use baked_gpu::BakedGpu;
+pub use truth::Truth;
+
+use crate::gpu::{Census, GpuError};
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::shade;
+use crate::shot::Shot;
+use glam::Vec3;
+
+/// A way to know how much of the sun is seen.
+pub trait Technique {
+    /// Its name, as on the command line.
+    fn name(&self) -> String;
+
+    /// How much of the sun the surface at each pixel's centre sees.
+    fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError>;
+
+    /// The picture, in linear light.
+    fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
+        let visibility = self.visibility(shot, moment)?;
+        Ok(shade::lit_picture(shot, moment, &visibility))
+    }
+
+    /// Bytes it keeps from frame to frame, beyond the scene itself.
+    fn bytes(&self) -> u64;
+
+    /// What was built on the GPU for it; none where the CPU draws.
+    fn census(&self) -> Option<Census> {
+        None
+    }
+}

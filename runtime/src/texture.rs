@@ -1,0 +1,149 @@
+//! Base colour textures with levels of detail, and their sampling on the CPU: the twin of what a GPU's sampler does with
+//! an sRGB texture and `textureSampleLevel`.
+
+use glam::{Vec2, Vec4};
+use std::sync::LazyLock;
+use sunbake::scene::alpha::wrap_texel;
+use sunbake::scene::{Image, Wrap};
+
+/// An image and its halvings, down to one texel.
+#[derive(Debug, Clone)]
+pub struct MipChain {
+    /// The first is the image itself.
+    pub levels: Vec<Level>,
+}
+
+/// One level of detail.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// In texels.
+    pub width: u32,
+    /// In texels.
+    pub height: u32,
+    /// sRGB colour and linear alpha, row order.
+    pub rgba: Vec<[u8; 4]>,
+}
+
+/// Linear light of each sRGB code (IEC 61966-2-1).
+static LINEAR_FROM_SRGB: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|code| {
+        let x = code as f64 / 255.0;
+        (if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }) as f32
+    })
+});
+
+/// The sRGB curve, for values in [0, 1].
+pub fn srgb_from_linear(x: f32) -> f32 {
+    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// Linear light of an sRGB code.
+pub fn linear_from_srgb(code: u8) -> f32 {
+    LINEAR_FROM_SRGB[code as usize]
+}
+
+fn linear(texel: [u8; 4]) -> Vec4 {
+    let [r, g, b, a] = texel;
+    Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), f32::from(a) / 255.0)
+}
+
+fn encoded(color: Vec4) -> [u8; 4] {
+    let code = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
+    let [r, g, b] = [color.x, color.y, color.z].map(|x| code(srgb_from_linear(x)));
+    [r, g, b, code(color.w)]
+}
+
+impl MipChain {
+    /// Halves the image until one texel is left.
+    pub fn new(image: &Image) -> Self {
+        let mut levels = vec![Level { width: image.width, height: image.height, rgba: image.rgba.clone() }];
+        while let Some(next) = levels.last().and_then(Level::halved) {
+            levels.push(next);
+        }
+        Self { levels }
+    }
+
+    /// Filtered within and between levels.
+    pub fn sample(&self, uv: Vec2, lod: f32, wrap: [Wrap; 2]) -> Vec4 {
+        let lod = lod.clamp(0.0, (self.levels.len() - 1) as f32);
+        let fine = lod.floor() as usize;
+        let weight = lod - lod.floor();
+        let near = self.levels[fine].sample(uv, wrap);
+        if weight == 0.0 { near } else { near.lerp(self.levels[fine + 1].sample(uv, wrap), weight) }
+    }
+}
+
+impl Level {
+    /// Half as wide and high, rounded down; none if there is one texel only. Colours are weighed by their alpha, so that
+    /// what is cut away does not tint what is left.
+    fn halved(&self) -> Option<Self> {
+        if self.width == 1 && self.height == 1 {
+            return None;
+        }
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mut rgba = Vec::with_capacity(width as usize * height as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
+                    linear(self.texel((2 * x + i).min(self.width - 1), (2 * y + j).min(self.height - 1)))
+                });
+                rgba.push(encoded(mean(four)));
+            }
+        }
+        Some(Self { width, height, rgba })
+    }
+
+    fn texel(&self, x: u32, y: u32) -> [u8; 4] {
+        self.rgba[y as usize * self.width as usize + x as usize]
+    }
+
+    fn sample(&self, uv: Vec2, wrap: [Wrap; 2]) -> Vec4 {
+        let place = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
+        let base = place.floor();
+        let weight = place - base;
+        let (x, y) = (base.x as i64, base.y as i64);
+        let at = |dx: i64, dy: i64| {
+            linear(self.texel(wrap_texel(x + dx, self.width, wrap[0]), wrap_texel(y + dy, self.height, wrap[1])))
+        };
+        let top = at(0, 0).lerp(at(1, 0), weight.x);
+        let bottom = at(0, 1).lerp(at(1, 1), weight.x);
+        top.lerp(bottom, weight.y)
+    }
+}
+
+fn mean(four: [Vec4; 4]) -> Vec4 {
+    let alpha: f32 = four.iter().map(|c| c.w).sum();
+    let weigh = |c: Vec4| if alpha > 0.0 { c.w / alpha } else { 0.25 };
+    let color: Vec4 = four.iter().map(|&c| c * weigh(c)).sum();
+    color.truncate().extend(alpha / 4.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Image {
+        Image { name: String::new(), width, height, rgba, encoded: Vec::new(), mime_type: "image/png" }
+    }
+
+    #[test]
+    fn a_flat_image_is_flat_at_every_level() {
+        let mips = MipChain::new(&image(5, 3, vec![[200, 100, 50, 255]; 15]));
+        assert_eq!(mips.levels.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(), [(5, 3), (2, 1), (1, 1)]);
+        assert!(mips.levels.iter().all(|l| l.rgba.iter().all(|&t| t == [200, 100, 50, 255])));
+    }
+
+    #[test]
+    fn codes_survive_decoding_and_encoding() {
+        for code in 0..=255 {
+            assert_eq!(encoded(linear([code, code, code, code])), [code; 4]);
+        }
+    }
+
+    #[test]
+    fn sampling_at_texel_centres_returns_texels_and_between_them_their_mean() {
+        let mips = MipChain::new(&image(2, 1, vec![[0, 0, 0, 255], [255, 255, 255, 255]]));
+        let at = |u: f32| mips.sample(Vec2::new(u, 0.5), 0.0, [Wrap::Repeat; 2]).x;
+        assert!((at(0.25), at(0.75)) == (0.0, 1.0) && (at(0.5) - 0.5).abs() < 1e-6 && (at(1.0) - 0.5).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,96 @@
+//! Counts of pipelines, textures, bindings and targets, held against scenes. These tests need a GPU adapter.
+
+use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+use sunbake::maps::Bits;
+use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
+use sunbake::testing::{SceneBuilder, block, opaque};
+use sunbake_runtime::gpu::{Census, Gpu};
+use sunbake_runtime::technique::{BakedGpu, Technique};
+use sunbake_runtime::testing::{bake, equinox, view};
+use sunbake_runtime::{Filter, Moment, Shot, Stage};
+
+fn census(stage: &Stage, draw_visibility: bool) -> Census {
+    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let shot = Shot::new(stage, view(stage, DVec3::new(4.0, 3.0, 5.0), DVec3::ZERO, [16, 16]));
+    let moment = Moment::new(stage.path.as_ref(), 0.5);
+    let mut technique = BakedGpu::new(&gpu, stage, Filter::Bilinear).unwrap();
+    match draw_visibility {
+        true => drop(technique.visibility(&shot, &moment).unwrap()),
+        false => drop(technique.color(&shot, &moment).unwrap()),
+    }
+    technique.census().unwrap()
+}
+
+fn cube() -> Vec<[Vec3; 3]> {
+    block(Vec3::ZERO, Vec3::ONE)
+}
+
+#[test]
+fn a_plain_scene_needs_three_pipelines_and_one_pair_of_textures() {
+    let stage = bake(SceneBuilder::new().soup(&cube()).build(), Some(equinox(35.0)), 8, Bits::Sixteen);
+    let layers: usize = stage.pages[0].lanes.iter().map(|lane| lane.layers.len()).sum();
+    let [width, height] = [stage.pages[0].width, stage.pages[0].height].map(u64::from);
+    let expected = Census {
+        passes: 2,
+        pipelines: 3, // Depth, lit, sky.
+        time_textures: 2,
+        vertex_buffers: 2,
+        bind_groups: 2,
+        targets: 2,
+        draws: 1,
+        map_bytes: width * height * layers as u64 * 16,
+        ..Census::default()
+    };
+    assert_eq!(census(&stage, false), expected);
+    // Visibility alone needs no sky.
+    assert_eq!(census(&stage, true), Census { pipelines: 2, ..expected });
+}
+
+#[test]
+fn a_set_without_a_sun_has_no_textures_of_times_and_no_binding_for_them() {
+    let stage = bake(SceneBuilder::new().soup(&cube()).build(), None, 8, Bits::Sixteen);
+    let found = census(&stage, false);
+    assert_eq!((found.time_textures, found.bind_groups, found.map_bytes), (0, 1, 0));
+}
+
+#[test]
+fn an_empty_scene_needs_the_sky_alone() {
+    let stage = bake(SceneBuilder::new().build(), Some(equinox(35.0)), 8, Bits::Sixteen);
+    let found = census(&stage, false);
+    assert_eq!((found.pipelines, found.vertex_buffers, found.draws), (1, 0, 0));
+}
+
+#[test]
+fn ambient_occlusion_is_bound_only_where_a_set_has_it() {
+    let mut stage = bake(SceneBuilder::new().soup(&cube()).build(), None, 8, Bits::Sixteen);
+    assert_eq!(census(&stage, false).ao_textures, 0);
+    let texels = stage.pages[0].width as usize * stage.pages[0].height as usize;
+    stage.pages[0].ao = Some(vec![40_000; texels]);
+    let found = census(&stage, false);
+    assert_eq!((found.ao_textures, found.time_textures, found.map_bytes), (1, 0, texels as u64 * 2));
+}
+
+#[test]
+fn textures_holes_colours_and_second_sides_cost_only_the_scenes_that_have_them() {
+    let (builder, image) = SceneBuilder::new().image(4, 4, vec![[90, 120, 60, 255]; 16]);
+    let texture = TextureRef { image, texcoord: 0, image_from_texcoord: Mat3::IDENTITY, wrap: [Wrap::Repeat; 2] };
+    let mesh = |has_colors: bool| {
+        let positions: Vec<Vec3> = cube().iter().flatten().copied().collect();
+        let uvs = positions.iter().map(|p| Vec2::new(p.x, p.y + p.z)).collect();
+        let colors = has_colors.then(|| vec![Vec4::ONE; positions.len()]);
+        Mesh { indices: (0..36).collect(), positions, texcoords: [Some(uvs), None], colors, ..Mesh::default() }
+    };
+    let textured = Material { base_color_texture: Some(texture), ..opaque() };
+    let leaf = Material { alpha: Alpha::Cut { cutoff: 0.5 }, is_double_sided: true, ..textured.clone() };
+    let at = |x: f64| [DMat4::from_translation(DVec3::new(x, 0.0, 0.0))];
+    let builder = builder.mesh_of(mesh(false), textured.clone(), &at(0.0)).mesh_of(mesh(false), textured, &at(2.0));
+    let plain = bake(builder.clone().build(), Some(equinox(35.0)), 6, Bits::Eight);
+    let found = census(&plain, false);
+    assert_eq!((found.pipelines, found.draws, found.base_color_textures, found.vertex_buffers), (3, 1, 1, 3));
+    assert_eq!((found.alpha_test_pipelines, found.two_sided_pipelines), (0, 0));
+    let leafy = builder.mesh_of(mesh(false), leaf, &at(4.0)).mesh_of(mesh(true), opaque(), &at(6.0));
+    let found = census(&bake(leafy.build(), Some(equinox(35.0)), 6, Bits::Eight), false);
+    // Lit: textured, leaf, coloured. Depth: solid, leaf. Sky.
+    assert_eq!((found.pipelines, found.draws, found.base_color_textures, found.vertex_buffers), (6, 3, 1, 4));
+    assert_eq!((found.alpha_test_pipelines, found.two_sided_pipelines), (2, 2));
+}

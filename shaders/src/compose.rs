@@ -1,0 +1,154 @@
+//! Puts shaders together: constants, then files, in the order in which they would be read.
+
+use crate::uniforms::{WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
+use crate::vertex::{DEPTH_VERTEX_WGSL, surface_vertex_wgsl};
+use std::fmt::Write;
+
+macro_rules! wgsl {
+    ($name:literal) => {
+        include_str!(concat!("wgsl/", $name, ".wgsl"))
+    };
+}
+
+/// What a surface needs of its program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct SurfaceVariant {
+    /// Its material has a base colour texture.
+    pub is_textured: bool,
+    /// Its mesh has colours.
+    pub has_vertex_color: bool,
+    /// It has holes.
+    pub is_cut: bool,
+}
+
+/// How stored times become a pixel's visibility.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Filter {
+    /// The texel under the pixel: blocky, as in the chapter.
+    Nearest,
+    /// Four texels, each evaluated, then blended.
+    #[default]
+    Bilinear,
+}
+
+/// A lane across the sun's disc, as a page stores it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaneVariant {
+    /// Number of layers.
+    pub layer_count: u32,
+    /// Share of the light.
+    pub weight: f32,
+    /// The lane's chord across the disc, as a share of the diameter: how much narrower its window is.
+    pub chord: f32,
+}
+
+/// What an atlas page needs of the programs that read it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PageVariant {
+    /// 255 or 65535.
+    pub max_code: u16,
+    /// In the order of their layers. Empty: there is no sun in the set, or no texel of the page ever sees it.
+    pub lanes: Vec<LaneVariant>,
+    /// Whether there is an ambient occlusion map.
+    pub has_ao: bool,
+}
+
+impl PageVariant {
+    /// Array layers of the page's `rise` and of its `fall` texture. None: no texture, no binding and no loop.
+    pub fn layer_count(&self) -> u32 {
+        self.lanes.iter().map(|lane| lane.layer_count).sum()
+    }
+}
+
+/// The depth pass: entry points `depth_vertex`, or for surfaces with holes `surface_vertex` and `depth_fragment`.
+pub fn depth_shader(surface: SurfaceVariant) -> String {
+    let mut text = constants();
+    text.push_str(wgsl!("frame"));
+    text.push_str(wgsl!("place"));
+    if surface.is_cut {
+        push_surface(&mut text, surface);
+        text.push_str(wgsl!("depth_fragment"));
+    } else {
+        text.push_str(DEPTH_VERTEX_WGSL);
+    }
+    text
+}
+
+/// The lit pass: entry points `surface_vertex` and `lit_fragment`.
+pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+    let mut text = shading(surface, page, filter);
+    text.push_str(if page.has_ao { wgsl!("openness_baked") } else { wgsl!("openness_none") });
+    text.push_str(wgsl!("shade"));
+    text.push_str(wgsl!("lit_fragment"));
+    text
+}
+
+/// The visibility pass: entry points `surface_vertex` and `visibility_fragment`.
+pub fn visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+    let mut text = shading(surface, page, filter);
+    text.push_str(wgsl!("visibility_fragment"));
+    text
+}
+
+/// The background: entry points `sky_vertex` and `sky_fragment`.
+pub fn sky_shader() -> String {
+    [&constants(), wgsl!("frame"), wgsl!("sky_color"), wgsl!("sky")].concat()
+}
+
+fn constants() -> String {
+    format!(
+        "const WRAP_REPEAT: u32 = {WRAP_REPEAT}u;\nconst WRAP_MIRROR: u32 = {WRAP_MIRROR}u;\nconst WRAP_CLAMP: u32 = \
+         {WRAP_CLAMP}u;\n"
+    )
+}
+
+fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+    let mut text = constants();
+    text.push_str(wgsl!("frame"));
+    text.push_str(wgsl!("place"));
+    push_surface(&mut text, surface);
+    text.push_str(wgsl!("facing"));
+    if page.layer_count() == 0 {
+        text.push_str(wgsl!("sun_none"));
+        return text;
+    }
+    let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
+    text.push_str(wgsl!("soft_visibility"));
+    text.push_str(&disc_visibility(&page.lanes));
+    text.push_str(match filter {
+        Filter::Nearest => wgsl!("filter_nearest"),
+        Filter::Bilinear => wgsl!("filter_bilinear"),
+    });
+    text.push_str(wgsl!("sun_baked"));
+    text
+}
+
+/// Vertex stage, varyings, and what is known of the surface's colour and holes.
+fn push_surface(text: &mut String, surface: SurfaceVariant) {
+    text.push_str(&surface_vertex_wgsl(surface));
+    text.push_str(if surface.is_textured { wgsl!("texture_color") } else { wgsl!("texture_none") });
+    text.push_str(if surface.has_vertex_color { wgsl!("vertex_color") } else { wgsl!("vertex_color_none") });
+    if surface.is_cut {
+        text.push_str(wgsl!("alpha_cut"));
+        text.push_str(if surface.is_textured { wgsl!("texel_alpha") } else { wgsl!("texel_alpha_none") });
+    } else {
+        text.push_str(wgsl!("alpha_none"));
+    }
+}
+
+/// The lanes' sum, written out: their number, layers, weights and chords are constants of the page.
+fn disc_visibility(lanes: &[LaneVariant]) -> String {
+    let mut text = String::from("fn disc_visibility(texel: vec2<i32>) -> f32 {\n    var seen = 0.0;\n");
+    let mut first = 0;
+    for lane in lanes.iter().filter(|lane| lane.layer_count > 0) {
+        let end = first + lane.layer_count;
+        let (weight, chord) = (lane.weight, lane.chord);
+        let _ = writeln!(
+            text,
+            "    seen += {weight:?} * soft_visibility(texel, vec2<i32>({first}, {end}), frame.t, frame.width_t * {chord:?});"
+        );
+        first = end;
+    }
+    text.push_str("    return seen;\n}\n");
+    text
+}

@@ -1,0 +1,2 @@
+// A surface without holes.
+fn cut_away(varyings: Varyings) {}

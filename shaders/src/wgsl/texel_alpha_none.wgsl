@@ -1,0 +1,3 @@
+fn texel_alpha(varyings: Varyings, material: Material) -> f32 {
+    return 1.0;
+}

@@ -1,0 +1,91 @@
+//! Every shader that the runtime can compose is parsed and validated without a GPU, and every struct that Rust and WGSL
+//! share has the same layout on both sides.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use std::mem::offset_of;
+use sunbake_shaders::*;
+
+fn validated(text: &str) -> naga::Module {
+    let module = naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}\n{text}", e.emit_to_string(text)));
+    Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+    module
+}
+
+fn surfaces() -> Vec<SurfaceVariant> {
+    (0..8)
+        .map(|bits| SurfaceVariant {
+            is_textured: bits & 1 != 0,
+            has_vertex_color: bits & 2 != 0,
+            is_cut: bits & 4 != 0,
+        })
+        .collect()
+}
+
+fn pages() -> Vec<PageVariant> {
+    let lane = |layer_count, weight| LaneVariant { layer_count, weight, chord: 0.75 };
+    let lanes = [vec![], vec![lane(0, 1.0)], vec![lane(1, 1.0)], vec![lane(2, 0.25), lane(4, 0.5), lane(0, 0.25)]];
+    let with = |lanes: &Vec<LaneVariant>, max_code, has_ao| PageVariant { max_code, lanes: lanes.clone(), has_ao };
+    lanes.iter().flat_map(|l| [with(l, 255, false), with(l, 65_535, true)]).collect()
+}
+
+#[test]
+fn every_composed_shader_is_valid() {
+    validated(&sky_shader());
+    for surface in surfaces() {
+        validated(&depth_shader(surface));
+        for page in pages() {
+            for filter in [Filter::Nearest, Filter::Bilinear] {
+                validated(&lit_shader(surface, &page, filter));
+                validated(&visibility_shader(surface, &page, filter));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_snippet_for_engines_is_valid() {
+    validated(ENGINE_WGSL);
+}
+
+#[test]
+fn what_a_page_has_not_is_not_in_its_program() {
+    let names = |page: &PageVariant, surface| {
+        let module = validated(&lit_shader(surface, page, Filter::Bilinear));
+        module.global_variables.iter().filter_map(|(_, v)| v.name.clone()).collect::<Vec<_>>()
+    };
+    let plain = SurfaceVariant::default();
+    assert_eq!(names(&PageVariant::default(), plain), ["frame", "materials"]);
+    let textured = SurfaceVariant { is_textured: true, ..plain };
+    assert_eq!(names(&PageVariant::default(), textured), ["frame", "materials", "base_texture", "base_sampler"]);
+    let all = PageVariant {
+        max_code: 255,
+        lanes: vec![LaneVariant { layer_count: 1, weight: 1.0, chord: 1.0 }],
+        has_ao: true,
+    };
+    assert_eq!(names(&all, plain), ["frame", "materials", "rise_map", "fall_map", "ao_map"]);
+}
+
+fn members(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
+    let (_, found) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("the struct exists");
+    let naga::TypeInner::Struct { members, span } = &found.inner else { panic!("{name} is not a struct") };
+    (members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset)).collect(), *span)
+}
+
+macro_rules! offsets {
+    ($type:ty: $($field:ident),*) => {
+        vec![$((stringify!($field).to_owned(), offset_of!($type, $field) as u32)),*]
+    };
+}
+
+#[test]
+fn uniforms_have_one_layout_in_rust_and_wgsl() {
+    let module = validated(&sky_shader());
+    let rust = offsets!(FrameUniform: clip_from_eye, eye_m, pixel_angle_rad, ray_first, t, ray_per_column, width_t,
+        ray_per_row, sun_cos_radius, sun_direction, discs_per_radian, sun_light, sky_light, ground_light, zenith,
+        horizon, glow, haze);
+    assert_eq!(members(&module, "Frame"), (rust, size_of::<FrameUniform>() as u32));
+    let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
+    assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));
+}
