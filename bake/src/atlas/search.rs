@@ -63,7 +63,8 @@ fn plan_for_pages(
     loop {
         if let Some(plan) = densest(settings, count, items, meter) {
             if count > pages {
-                warnings.push(format!("too many charts for the {pages} pages asked for: there are {count}"));
+                let edge = settings.page_size_texels;
+                warnings.push(format!("the charts take {count} pages of {edge} texels; a larger --size takes fewer"));
             }
             return Ok(plan);
         }
