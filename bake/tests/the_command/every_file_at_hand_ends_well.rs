@@ -204,7 +204,7 @@ fn the_shared_scenes() {
 fn our_own_scene() {
     let file = gas_station();
     let sets = tempfile::tempdir().unwrap();
-    let rows = bake_all(&[file.clone()], file.parent().unwrap(), sets.path());
+    let rows = bake_all(std::slice::from_ref(&file), file.parent().unwrap(), sets.path());
     assert_eq!(check(&rows), BTreeMap::from([(0, 1)]));
     validate(&rows);
 }
