@@ -29,7 +29,7 @@ fn courtyard() -> SceneBuilder {
         .soup_of(&[sheet], Material { is_double_sided: true, ..opaque() })
 }
 
-fn transformed(scene: Scene, matrix: DMat4) -> Scene {
+fn transformed(scene: &Scene, matrix: DMat4) -> Scene {
     let mut builder = SceneBuilder::new();
     for instance in &scene.instances {
         let world = DMat4::from_translation(scene.centre_m) * instance.bake_from_object;
@@ -95,7 +95,7 @@ fn a_scene_a_million_units_away_bakes_the_same_maps() {
     let folder = temporary();
     let near = bake_scene(&courtyard().build(), &quick(), folder.path(), "near");
     let away = DMat4::from_translation(DVec3::new(1e6 + 0.3, -4e5, 2.7e6));
-    let far = bake_scene(&transformed(courtyard().build(), away), &quick(), folder.path(), "far");
+    let far = bake_scene(&transformed(&courtyard().build(), away), &quick(), folder.path(), "far");
     let share = share_that_differs(&near, &far);
     assert!(share < 1e-3, "{share} of the texels differ");
     let centre = far.manifest.scene.centre_m;
@@ -108,7 +108,7 @@ fn a_scene_of_another_size_bakes_the_same_maps() {
     let folder = temporary();
     let usual = bake_scene(&courtyard().build(), &quick(), folder.path(), "usual");
     for (name, scale) in [("tiny", 1e-4), ("huge", 1e4)] {
-        let scaled = transformed(courtyard().build(), DMat4::from_scale(DVec3::splat(scale)));
+        let scaled = transformed(&courtyard().build(), DMat4::from_scale(DVec3::splat(scale)));
         let set = bake_scene(&scaled, &quick(), folder.path(), name);
         let share = share_that_differs(&usual, &set);
         assert!(share < 1e-3, "{name}: {share} of the texels differ");
@@ -292,7 +292,7 @@ fn stored_times_agree_with_brute_force_within_a_step() {
             compared += 1;
             if truth[i] != stored {
                 apart += 1;
-                let near = truth[i.saturating_sub(4)..truth.len().min(i + 5)].iter().any(|lit| *lit == stored);
+                let near = truth[i.saturating_sub(4)..truth.len().min(i + 5)].contains(&stored);
                 assert!(near, "{texel:?} at {t}: lit {}, stored {stored}, and no edge within a step", truth[i]);
             }
         }

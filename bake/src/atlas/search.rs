@@ -63,8 +63,10 @@ fn plan_for_pages(
     loop {
         if let Some(plan) = densest(settings, count, items, meter) {
             if count > pages {
-                let edge = settings.page_size_texels;
-                warnings.push(format!("the charts take {count} pages of {edge} texels; a larger --size takes fewer"));
+                warnings.push(format!(
+                    "the charts take {count} pages of {} texels; a larger --size takes fewer",
+                    settings.page_size_texels
+                ));
             }
             return Ok(plan);
         }
