@@ -468,14 +468,21 @@ fn instance_entries(scene: &Scene, atlas: &Atlas, written: &[(usize, usize)]) ->
     written.iter().enumerate().map(entry).collect()
 }
 
+/// Most layers that may be asked for.
+const MOST_LAYERS: u64 = 16;
+
 /// Advice where slots ran out, in words that know the flag already given.
 fn loss_warning(manifest: &Manifest, settings: &BakeSettings) -> Option<String> {
     let merge = &manifest.error.merge_min;
     let needed = manifest.stats.most_intervals.div_ceil(4);
+    let advice = match needed {
+        ..=MOST_LAYERS => format!("--layers {needed} keeps them all"),
+        _ if settings.layer_cap as u64 >= MOST_LAYERS => "that is as many as there are".into(),
+        _ => format!("--layers {MOST_LAYERS} keeps more of them"),
+    };
     (manifest.error.merged_texels > 0).then(|| {
         format!(
-            "{} texels have more intervals than --layers {} holds: the worst is wrong for {:.1} minutes of the day; \
-             --layers {needed} keeps them all",
+            "{} texels have more intervals than --layers {} holds: the worst is wrong for {:.1} minutes of the day; {advice}",
             manifest.error.merged_texels, settings.layer_cap, merge.worst
         )
     })

@@ -111,6 +111,7 @@ fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
         north_deg: given.north,
         window: given.window,
     };
-    let names_a_day = given.place.is_some() || given.date.is_some() || given.window.is_some();
+    let names_a_day =
+        given.place.is_some() || given.date.is_some() || given.window.is_some() || given.utc_offset.is_some();
     Ok(if names_a_day { SunRequest::Day(request) } else { SunRequest::SceneOr(request) })
 }

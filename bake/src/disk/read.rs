@@ -8,8 +8,8 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the manifest in a set's folder.
 pub const MANIFEST_FILE: &str = "sunbake.json";
-/// Widest page that is read.
-const MAX_PAGE_TEXELS: u32 = 32_768;
+/// Widest page that is read: what a bake may make at most.
+const MAX_PAGE_TEXELS: u32 = 16_384;
 
 /// A baked set, read and checked: files exist, sizes agree, indices are in range. The scene itself is read with
 /// [`crate::scene::load`] from [`BakedSet::scene_file`].

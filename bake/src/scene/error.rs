@@ -86,7 +86,8 @@ pub enum LoadError {
     },
     /// More memory would be needed than is allowed.
     #[error(
-        "{what} needs {needed_bytes} bytes more, and of the limit of {limit_bytes} bytes only {left_bytes} are left; raise --max-memory, or simplify the scene"
+        "{what} needs {} more, and of the {} allowed only {} are left; raise --max-memory, or simplify the scene",
+        size(*needed_bytes), size(*limit_bytes), size(*left_bytes)
     )]
     TooLarge {
         /// What would need it.
@@ -126,6 +127,15 @@ pub enum LoadError {
         /// What there was instead.
         cause: String,
     },
+}
+
+/// A number of bytes as people say it.
+fn size(bytes: u64) -> String {
+    match bytes {
+        0..10_000 => format!("{bytes} bytes"),
+        10_000..10_000_000 => format!("{:.1} KiB", bytes as f64 / f64::from(1 << 10)),
+        _ => format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20)),
+    }
 }
 
 /// Which exit code an error belongs to.

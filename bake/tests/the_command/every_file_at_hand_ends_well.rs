@@ -8,8 +8,10 @@ use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Longest that a file may take.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// Seconds of processor time that a file may take: a busy machine is no hang.
+const CPU_S: u64 = 120;
+/// Longest that a file may take by the clock, for what waits without working.
+const PATIENCE: Duration = Duration::from_secs(600);
 /// Address space that a bake gets, in KiB.
 const MEMORY_KIB: u64 = 4 << 20;
 
@@ -59,7 +61,9 @@ fn scenes_below(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn bake(file: &Path, root: &Path, target: PathBuf) -> Row {
-    let script = format!("ulimit -v {MEMORY_KIB}; exec \"$0\" bake \"$1\" -o \"$2\" --preset draft --threads 1 --json");
+    let script = format!(
+        "ulimit -v {MEMORY_KIB}; ulimit -t {CPU_S}; exec \"$0\" bake \"$1\" -o \"$2\" --preset draft --threads 1 --json"
+    );
     let stderr = target.with_extension("stderr");
     let mut command = Command::new("sh");
     command.args(["-c", &script, SUNBAKE]).arg(file).arg(&target).stdout(Stdio::null());
@@ -79,10 +83,11 @@ fn bake(file: &Path, root: &Path, target: PathBuf) -> Row {
         std::thread::sleep(Duration::from_millis(2));
     };
     let text = String::from_utf8_lossy(&std::fs::read(&stderr).expect("stderr")).into_owned();
+    let first_line = text.lines().next().unwrap_or_default();
     Row {
         file: file.strip_prefix(root).unwrap_or(file).display().to_string(),
         code: status.and_then(|s| s.code()),
-        first_line: text.lines().next().unwrap_or_default().to_owned(),
+        first_line: first_line.replace(&format!("{}/", root.display()), ""),
         seconds: started.elapsed().as_secs_f64(),
         peak_mib,
         set: target,
@@ -171,12 +176,14 @@ fn the_khronos_test_files() {
     let sets = tempfile::tempdir().unwrap();
     let rows = bake_all(&files, &folder, sets.path());
     let counts = check(&rows);
-    validate(&rows);
-    assert_eq!(counts, BTreeMap::from(KHRONOS_COUNTS));
+    assert_eq!(counts, BTreeMap::from([(3, 372)]), "none of them draws a triangle");
+    let empty = rows.iter().filter(|row| row.first_line.contains("draws no triangles")).count();
+    println!("{empty} of them are understood, and draw no triangles");
+    assert_eq!(empty, KHRONOS_EMPTY);
 }
 
-/// Exit codes of the Khronos test files: most hold no mesh at all.
-const KHRONOS_COUNTS: [(i32, usize); 2] = [(0, 0), (3, 372)];
+/// Khronos test files that can be read, and draw nothing. The others are refused for what they test.
+const KHRONOS_EMPTY: usize = 335;
 
 #[test]
 fn the_shared_scenes() {
