@@ -113,7 +113,7 @@ pub struct LookArgs {
     /// Width and height in pixels, each 1 to 16384.
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1280x720")]
     pub size: [u32; 2],
-    /// A camera of the scene by name, `default`, or "ex,ey,ez,tx,ty,tz[,fov]".
+    /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`.
     ///
     /// The numbers are the eye and the point it looks at in the scene's world space, in metres, and the vertical field
     /// of view in degrees, 45 unless given. The default is the scene's first camera or, if it has none, a view from

@@ -1,7 +1,7 @@
 //! Playback on the GPU, without a window.
 //!
 //! Built once per stage: vertex streams, one texture pair a page, base colour textures, one pipeline per variant that
-//! occurs ([`Program`]). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
+//! occurs (`program.rs`). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
 //! visibility). Depth is reversed and infinite, `Depth32Float`; the second pass draws where depths are equal, so that
 //! each pixel is lit once.
 //!

@@ -5,8 +5,8 @@
 //! those of clear air with a little dust.
 //!
 //! **Brightness.** A noon is some thousand times brighter than a dusk. The eye follows, a picture with a fixed exposure
-//! cannot: the sun's brightness is therefore compressed by a power ([`ADAPTATION`]), and all light is lifted as what level
-//! ground receives falls ([`EYE`]), as if the eye had gone part of the way.
+//! cannot: the sun's brightness is therefore compressed by a power (`ADAPTATION`), and all light is lifted as what level
+//! ground receives falls (`EYE`), as if the eye had gone part of the way.
 //!
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
 //! is measured: it is there so that the shadows under study fall in a believable light.
