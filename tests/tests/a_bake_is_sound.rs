@@ -262,6 +262,48 @@ fn a_picket_fence_reports_what_one_layer_loses() {
     assert!(enough.atlases[0].lanes[0].layers.len() as u64 == enough.stats.most_intervals.div_ceil(4));
 }
 
+/// B6: the sun rises behind a wall that stands on a floor. No texel before it is lit earlier than the wall's height
+/// allows, at any density of texels.
+#[test]
+fn no_texel_before_a_wall_is_lit_too_early_at_any_density() {
+    const STEPS: usize = 512;
+    let folder = temporary();
+    let keys = r#"{"keys": [{"azimuth_deg": 270, "elevation_deg": 0}, {"azimuth_deg": 0, "elevation_deg": 90}, {"azimuth_deg": 90, "elevation_deg": 0}]}"#;
+    let height = 2.0;
+    for (kind, thickness) in [("block", 0.2), ("sheet", 0.0f32)] {
+        let wall = match thickness > 0.0 {
+            true => block(Vec3::new(-thickness, 0.0, -4.0), Vec3::new(0.0, height, 4.0)),
+            false => floor(Vec2::new(0.0, -4.0), Vec2::new(height, 4.0), 0.0)
+                .iter()
+                .map(|t| t.map(|v| Vec3::new(0.0, v.x, v.z)))
+                .collect(),
+        };
+        let scene = SceneBuilder::new().soup(&floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0)).soup(&wall).build();
+        for texels_per_metre in [0.7, 3.0, 17.0] {
+            let settings = BakeSettings {
+                sun: SunRequest::Keyed { json: keys.into(), north_deg: 0.0 },
+                density: Density::TexelsPerMetre(texels_per_metre),
+                page_size_texels: 1024,
+                engine: EngineChoice::Rays(STEPS),
+                ..quick()
+            };
+            let set = bake_scene(&scene, &settings, folder.path(), kind);
+            let texels = all_texels(&set);
+            let shaded = texels.iter().filter(|t| t.instance == 0 && t.position[0] > 1e-3);
+            let mut count = 0;
+            for texel in shaded {
+                count += 1;
+                let near = f64::from(height).atan2(texel.position[0]);
+                let far = f64::from(height).atan2(texel.position[0] + f64::from(thickness));
+                let earliest = near.max(far) / std::f64::consts::PI - 1.0 / STEPS as f64;
+                let start = texel.lit.first().map_or(1.0, |lit| lit[0]);
+                assert!(start >= earliest, "{kind} at {texels_per_metre} texels/m: {texel:?} before {earliest}");
+            }
+            assert!(count >= 8, "{kind} at {texels_per_metre} texels/m has {count} texels before the wall");
+        }
+    }
+}
+
 /// An oracle of its own: f64 Moeller-Trumbore over all triangles, the sun from the manifest's own numbers.
 #[test]
 fn stored_times_agree_with_brute_force_within_a_step() {

@@ -108,6 +108,17 @@ mod tests {
     }
 
     #[test]
+    fn a_shadow_shorter_than_a_code_leaves_the_light_whole() {
+        let mut page = PageEncoder::new(1, Bits::Eight, 1);
+        let loss = page.set(0, &Intervals::from_unsorted(vec![[0.0, 0.5], [0.5001, 1.0]]));
+        let layers = page.finish();
+        for t in [0.2f32, 0.5, 0.50005, 0.8] {
+            assert_eq!(super::super::soft_visibility(&layers, 0, Bits::Eight, t, 0.01), 1.0);
+        }
+        assert!(loss.quantised_t > 0.0 && loss.quantised_t < 1.0 / 255.0);
+    }
+
+    #[test]
     fn layers_grow_with_the_busiest_texel_only() {
         let mut page = PageEncoder::new(2, Bits::Sixteen, 4);
         page.set(0, &Intervals::always());
