@@ -1,4 +1,4 @@
-//! Rays against the scene. The only file that names obvhs.
+//! Rays against the scene. This is the only file that names obvhs.
 //!
 //! The hierarchy is obvhs' eight-wide compressed BVH, walked in `f32`; triangles are tested in `f64` on their `f32`
 //! corners. Three departures from using obvhs as it comes:
@@ -11,9 +11,14 @@
 //! * **Tracer space.** Its nodes clamp sizes to an absolute 1e-4. The scene is therefore scaled by a power of two, which
 //!   loses no bit, until its half size lies between 512 and 1024 units.
 
-use crate::scene::alpha::{blend, image_uvs, nearest_texel, vertex_alphas};
-use crate::scene::{Alpha, Geometry, Scene, Wrap};
-use glam::{DVec3, Vec2, Vec3, Vec3A};
+mod cuts;
+mod direction;
+
+pub use direction::Direction;
+
+use crate::scene::{Geometry, Scene};
+use cuts::Cuts;
+use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray, RayHit};
@@ -47,16 +52,6 @@ pub struct Tracer {
     instance: Vec<u32>,
 }
 
-/// A ray's direction with what the triangle test needs of it; shared by all rays towards one sun.
-#[derive(Debug, Clone, Copy)]
-pub struct Direction {
-    unit: DVec3,
-    /// Axis along which the direction is largest, last; the other two in an order that keeps the winding.
-    axes: [usize; 3],
-    /// Shear that turns the direction into the last axis.
-    shear: DVec3,
-}
-
 /// The nearest surface along a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
@@ -71,50 +66,6 @@ pub struct Hit {
 /// A triangle as an occluder, to be tried first by the next ray in the same direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Occluder(u32);
-
-impl Direction {
-    /// Prepares a direction of unit length.
-    pub fn new(unit: DVec3) -> Self {
-        let last = unit.abs().max_position();
-        let (mut first, mut second) = ((last + 1) % 3, (last + 2) % 3);
-        if unit[last] < 0.0 {
-            (first, second) = (second, first);
-        }
-        let shear = DVec3::new(unit[first], unit[second], 1.0) / unit[last];
-        Self { unit, axes: [first, second, last], shear }
-    }
-
-    /// The direction itself.
-    pub fn unit(&self) -> DVec3 {
-        self.unit
-    }
-
-    /// For obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.
-    fn ray_from(&self, origin: DVec3) -> Ray {
-        Ray::new_inf(origin.as_vec3a(), self.unit.as_vec3a() + Vec3A::ZERO)
-    }
-
-    /// Where a ray from `origin` meets a triangle, in front of the origin: distance and corner weights.
-    #[inline]
-    fn meet(&self, origin: DVec3, corners: &[Vec3; 3]) -> Option<(f64, [f64; 2])> {
-        let [a, b, c] = corners.map(|corner| self.sheared(corner.as_dvec3() - origin));
-        let edges = [c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x];
-        if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
-            return None;
-        }
-        let determinant = edges[0] + edges[1] + edges[2];
-        let distance = (edges[0] * a.z + edges[1] * b.z + edges[2] * c.z) / determinant;
-        // Not `distance <= 0.0`: a ray in the triangle's plane has a NaN here, and misses.
-        (distance > 0.0).then(|| (distance, [edges[1] / determinant, edges[2] / determinant]))
-    }
-
-    #[inline]
-    fn sheared(&self, v: DVec3) -> DVec3 {
-        let along = v[self.axes[2]];
-        let across = [v[self.axes[0]] - self.shear.x * along, v[self.axes[1]] - self.shear.y * along];
-        DVec3::new(across[0], across[1], self.shear.z * along)
-    }
-}
 
 impl Tracer {
     /// Builds the hierarchy over every triangle that blocks light.
@@ -157,7 +108,7 @@ impl Tracer {
     /// Something solid along the direction, not always the nearest.
     pub fn occluder(&self, origin_m: DVec3, direction: &Direction) -> Option<Occluder> {
         let origin = self.shadow_start(origin_m, direction);
-        let ray = direction.ray_from(origin);
+        let ray = ray(origin, direction);
         let mut found = None;
         self.bvh.ray_traverse_miss(ray, |_, id| match self.meet(origin, direction, id) {
             Some(_) => {
@@ -178,7 +129,7 @@ impl Tracer {
     /// Where a shadow ray really starts, in tracer space.
     #[inline]
     fn shadow_start(&self, origin_m: DVec3, direction: &Direction) -> DVec3 {
-        origin_m * self.tracer_from_bake - direction.unit * self.run_up
+        origin_m * self.tracer_from_bake - direction.unit() * self.run_up
     }
 
     /// The nearest surface along the direction for which `accept` (given its flat triangle index) holds.
@@ -189,7 +140,7 @@ impl Tracer {
         accept: impl Fn(u32) -> bool,
     ) -> Option<Hit> {
         let origin = origin_m * self.tracer_from_bake;
-        let ray = direction.ray_from(origin);
+        let ray = ray(origin, direction);
         let mut nearest: Option<(usize, f64, [f64; 2])> = None;
         self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, id| {
             let Some((distance, barycentric)) = self.meet(origin, direction, id) else { return f32::INFINITY };
@@ -217,6 +168,11 @@ impl Tracer {
         let met = direction.meet(origin, &self.corners[id])?;
         self.cuts.is_solid(id, met.1).then_some(met)
     }
+}
+
+/// A ray for obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.
+fn ray(origin: DVec3, direction: &Direction) -> Ray {
+    Ray::new_inf(origin.as_vec3a(), direction.unit().as_vec3a() + Vec3A::ZERO)
 }
 
 /// The power of two that brings the largest coordinate to between 512 and 1024.
@@ -258,92 +214,6 @@ impl Padded {
 impl Boundable for Padded {
     fn aabb(&self) -> Aabb {
         self.0
-    }
-}
-
-/// Alpha masks of the triangles that have holes. Empty, and never asked, in a scene without any.
-#[derive(Default)]
-struct Cuts {
-    /// In the hierarchy's order: index in `triangles`, or [`Cuts::NONE`]. Empty if no triangle has holes.
-    of_triangle: Vec<u32>,
-    triangles: Vec<CutTriangle>,
-    masks: Vec<Mask>,
-}
-
-/// A triangle with holes.
-struct CutTriangle {
-    image_uvs: [Vec2; 3],
-    /// Vertex alpha times the material's factor.
-    alphas: [f32; 3],
-    cutoff: f32,
-    /// Index in [`Cuts::masks`], if the material has a texture.
-    mask: Option<u32>,
-}
-
-/// The alpha channel of a material's texture.
-struct Mask {
-    size: [u32; 2],
-    wrap: [Wrap; 2],
-    alpha: Vec<u8>,
-}
-
-impl Cuts {
-    const NONE: u32 = u32::MAX;
-
-    fn new(scene: &Scene, geometry: &Geometry, flat: &[u32]) -> Self {
-        if !scene.has_alpha_cut() {
-            return Self::default();
-        }
-        let mut cuts = Self { of_triangle: vec![Self::NONE; flat.len()], ..Self::default() };
-        let mut mask_of_material = vec![None; scene.materials.len()];
-        for (id, &triangle) in flat.iter().enumerate() {
-            let surface = geometry.surface(triangle as usize);
-            let mesh = &scene.meshes[scene.instances[surface.instance].mesh];
-            let material = &scene.materials[mesh.material];
-            let Alpha::Cut { cutoff } = material.alpha else { continue };
-            let texture = material.base_color_texture;
-            let mask = texture.map(|texture| {
-                *mask_of_material[mesh.material].get_or_insert_with(|| {
-                    cuts.masks.push(Mask::new(&scene.images[texture.image], texture.wrap));
-                    cuts.masks.len() as u32 - 1
-                })
-            });
-            cuts.of_triangle[id] = cuts.triangles.len() as u32;
-            cuts.triangles.push(CutTriangle {
-                image_uvs: texture.map_or([Vec2::ZERO; 3], |t| image_uvs(mesh, &t, surface.mesh_triangle)),
-                alphas: vertex_alphas(mesh, surface.mesh_triangle).map(|a| a * material.base_color.w),
-                cutoff,
-                mask,
-            });
-        }
-        cuts
-    }
-
-    #[inline]
-    fn is_solid(&self, id: usize, barycentric: [f64; 2]) -> bool {
-        match self.of_triangle.get(id) {
-            None | Some(&Self::NONE) => true,
-            Some(&cut) => self.is_solid_at(&self.triangles[cut as usize], barycentric.map(|b| b as f32)),
-        }
-    }
-
-    fn is_solid_at(&self, triangle: &CutTriangle, barycentric: [f32; 2]) -> bool {
-        let texel = triangle
-            .mask
-            .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
-        blend(triangle.alphas, barycentric) * texel >= triangle.cutoff
-    }
-}
-
-impl Mask {
-    fn new(image: &crate::scene::Image, wrap: [Wrap; 2]) -> Self {
-        let alpha = image.rgba.iter().map(|texel| texel[3]).collect();
-        Self { size: [image.width, image.height], wrap, alpha }
-    }
-
-    fn alpha_at(&self, uv: Vec2) -> f32 {
-        let [x, y] = nearest_texel(uv, self.size, self.wrap);
-        f32::from(self.alpha[y as usize * self.size[0] as usize + x as usize]) / 255.0
     }
 }
 

@@ -1,0 +1,95 @@
+//! The atlas of a bake, within the memory that it may take.
+
+use super::BakeError;
+use crate::atlas::{self, Atlas, AtlasError, AtlasSettings};
+use crate::progress::{Progress, Stage};
+use crate::scene::Scene;
+use crate::settings::BakeSettings;
+
+/// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
+/// settings that it came to.
+pub(super) fn unwrap_somehow(
+    scene: &Scene,
+    asked: &BakeSettings,
+    warnings: &mut Vec<String>,
+    progress: &dyn Progress,
+) -> Result<(Atlas, BakeSettings), BakeError> {
+    let mut settings = asked.clone();
+    loop {
+        let error = match unwrap(scene, &settings, progress) {
+            Ok(atlas) => {
+                if settings != *asked {
+                    warnings.push(settled_for(&settings, asked));
+                }
+                return Ok((atlas, settings));
+            }
+            Err(error @ AtlasError::PageTooSmall { .. }) => error,
+            Err(error) => return Err(error.into()),
+        };
+        if settings.padding_texels > 1 {
+            settings.padding_texels = 1;
+        } else {
+            settings.padding_texels = asked.padding_texels;
+            settings.page_size_texels *= 2;
+        }
+        let is_possible = settings.page_size_texels <= LARGEST_PAGE_TEXELS;
+        if !is_possible || check_memory(scene, &settings, settings.page_size_texels).is_err() {
+            return Err(error.into());
+        }
+    }
+}
+
+/// Largest page that is tried.
+const LARGEST_PAGE_TEXELS: u32 = 16_384;
+
+/// What the user asked for and did not get, with the flag that spares the search.
+fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> String {
+    let [padding, edge] = [settings.padding_texels, settings.page_size_texels];
+    let had = format!("a mesh has too many charts for a page of {} texels", asked.page_size_texels);
+    if edge == asked.page_size_texels {
+        return format!("{had} with --padding {}: it was baked with --padding {padding}", asked.padding_texels);
+    }
+    format!("{had}: it was baked on pages of {edge}; give --size {edge} or more, or simplify the mesh")
+}
+
+fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
+    progress.start(Stage::Unwrap, 1000);
+    let told = std::sync::atomic::AtomicU64::new(0);
+    let atlas_settings = AtlasSettings {
+        density: settings.density,
+        page_size_texels: settings.page_size_texels,
+        padding_texels: settings.padding_texels,
+        most_texels: settings.max_memory_bytes / BYTES_PER_SAMPLE,
+        ..AtlasSettings::default()
+    };
+    atlas::build(scene, &atlas_settings, &|share| {
+        let now = (share * 1000.0) as u64;
+        let before = told.fetch_max(now, std::sync::atomic::Ordering::Relaxed);
+        progress.advance(now.saturating_sub(before));
+        !progress.is_cancelled()
+    })
+}
+
+/// Bytes a covered texel takes while its page is baked: its sample, its intervals (three, as a town has on average, and
+/// the vectors around them) and its share of the loss tally.
+pub(super) const BYTES_PER_SAMPLE: u64 = 100;
+/// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
+const BYTES_PER_TRIANGLE: u64 = 600;
+
+/// Refuses pages of a size whose bake would need more memory than allowed.
+pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -> Result<(), BakeError> {
+    let texels = u64::from(page_size_texels).pow(2);
+    // Codes are held twice while they are written; two layers are what a scene usually needs.
+    let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2;
+    let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
+    let needed = codes + texels * BYTES_PER_SAMPLE + triangles;
+    if needed <= settings.max_memory_bytes {
+        return Ok(());
+    }
+    Err(BakeError::Memory {
+        what: format!("a page of {page_size_texels} x {page_size_texels} texels"),
+        smaller: "--size",
+        needed_mib: needed >> 20,
+        allowed_mib: settings.max_memory_bytes >> 20,
+    })
+}

@@ -1,0 +1,221 @@
+//! A bake from end to end: the flow of the crate, one stage after the other.
+
+mod entries;
+mod layout;
+mod pages;
+
+use crate::atlas::AtlasError;
+use crate::disk::manifest::{Manifest, StageSeconds};
+use crate::disk::write::{SetWriter, WriteError};
+use crate::glb::{self, GlbTooLarge};
+use crate::plan::{Effect, EffectPlan};
+use crate::progress::{Progress, Stage};
+use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
+use crate::settings::{BakeSettings, EngineChoice, SunRequest};
+use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
+use crate::trace::Tracer;
+use crate::visibility::{Engine, RayEngine};
+use entries::{instance_entries, loss_warning, manifest_of};
+use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
+use pages::PageBaker;
+use std::path::Path;
+use std::time::Instant;
+
+/// Why a bake did not finish. Nothing was left behind.
+#[derive(Debug, thiserror::Error)]
+pub enum BakeError {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The day is impossible.
+    #[error(transparent)]
+    Day(#[from] DayError),
+    /// The path file is wrong.
+    #[error(transparent)]
+    Keyed(#[from] KeyedError),
+    /// The scene's light makes no path.
+    #[error(transparent)]
+    Light(#[from] LightError),
+    /// The scene cannot be laid out.
+    #[error("{0}; give another --size, --padding or --texels-per-metre")]
+    Atlas(AtlasError),
+    /// The listener asked to stop.
+    #[error("stopped before the end; nothing was written")]
+    Cancelled,
+    /// The scene cannot be written again.
+    #[error(transparent)]
+    TooLarge(#[from] GlbTooLarge),
+    /// The set cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// More memory is needed than allowed.
+    #[error(
+        "{what} needs about {needed_mib} MiB of memory and {allowed_mib} MiB are allowed: \
+         give a smaller {smaller}, or a larger --max-memory"
+    )]
+    Memory {
+        /// What needs it.
+        what: String,
+        /// The flag that makes it need less.
+        smaller: &'static str,
+        /// How much, in MiB.
+        needed_mib: u64,
+        /// How much is allowed, in MiB.
+        allowed_mib: u64,
+    },
+    /// The threads cannot be started.
+    #[error("cannot start {threads} threads: {reason}; give a smaller --threads")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+impl From<AtlasError> for BakeError {
+    fn from(error: AtlasError) -> Self {
+        match error {
+            AtlasError::Cancelled => Self::Cancelled,
+            AtlasError::TooDense { density_per_metre, texels, most } => Self::Memory {
+                what: format!("a density of {density_per_metre} texels a metre (about {texels} texels)"),
+                smaller: "--texels-per-metre",
+                needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
+                allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,
+            },
+            other => Self::Atlas(other),
+        }
+    }
+}
+
+/// What a finished bake has to say.
+#[derive(Debug, Clone)]
+pub struct BakeReport {
+    /// The manifest as written.
+    pub manifest: Manifest,
+    /// What a user should know: one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// A scene read and its plan made: what `--explain` shows, before anything is spent.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The scene.
+    pub scene: Scene,
+    /// The sun's path, if it rises.
+    pub path: Option<SunPath>,
+    /// What will be baked and why.
+    pub plan: EffectPlan,
+    /// What a user should know.
+    pub warnings: Vec<String>,
+    load_seconds: f64,
+}
+
+/// Reads the scene and decides what to bake.
+pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progress) -> Result<Prepared, BakeError> {
+    progress.start(Stage::Load, 0);
+    let started = Instant::now();
+    let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
+    let scene = scene::load(scene_file, &limits)?;
+    let mut warnings = scene.warnings.clone();
+    let path = sun_path(settings, &scene, &mut warnings)?;
+    let plan = EffectPlan::new(&scene, path.as_ref(), "the sun does not rise");
+    Ok(Prepared { scene, path, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
+}
+
+/// Bakes `scene_file` into the folder `target`. `force` allows an older set there to be replaced.
+pub fn bake(
+    scene_file: &Path,
+    target: &Path,
+    force: bool,
+    settings: &BakeSettings,
+    progress: &dyn Progress,
+) -> Result<BakeReport, BakeError> {
+    // First of all the folder: nobody should wait for a bake that cannot be kept.
+    let writer = SetWriter::begin(target, force)?;
+    in_pool(settings.threads, || {
+        let prepared = prepare(scene_file, settings, progress)?;
+        bake_prepared(&prepared, writer, settings, progress)
+    })?
+}
+
+fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, BakeError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(pool.map_err(|e| BakeError::Threads { threads, reason: e.to_string() })?.install(work))
+}
+
+fn bake_prepared(
+    prepared: &Prepared,
+    mut writer: SetWriter,
+    settings: &BakeSettings,
+    progress: &dyn Progress,
+) -> Result<BakeReport, BakeError> {
+    let Prepared { scene, path, plan, .. } = prepared;
+    check_memory(scene, settings, settings.page_size_texels)?;
+    check_cancelled(progress)?;
+    let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
+    let mut warnings = prepared.warnings.clone();
+    let (atlas, settings) = &timed(&mut seconds.unwrap, || unwrap_somehow(scene, settings, &mut warnings, progress))?;
+
+    progress.start(Stage::Bvh, 0);
+    let geometry = Geometry::new(scene);
+    let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
+    let engine = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals)).map(|path| match settings.engine {
+        EngineChoice::Rays(count) => RayEngine::new(&tracer, path, count),
+    });
+
+    let engine = engine.as_ref().map(|e| e as &dyn Engine);
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine, progress, seconds);
+    let atlases = pages.bake_all(&mut writer)?;
+    let written = glb::write_glb(scene, &atlas.layouts)?;
+    timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
+
+    let PageBaker { mut stats, loss, .. } = pages;
+    stats.bytes = writer.bytes();
+    let duration_min = path.as_ref().map_or(0.0, |p| p.duration_min);
+    let manifest = Manifest {
+        stats,
+        atlases,
+        instances: instance_entries(scene, atlas, &written.places),
+        error: loss.finish(duration_min),
+        ..manifest_of(prepared, atlas, settings)
+    };
+    check_cancelled(progress)?;
+    writer.finish(&manifest)?;
+    warnings.extend(atlas.warnings.iter().cloned());
+    warnings.extend(loss_warning(&manifest, settings));
+    Ok(BakeReport { manifest, warnings })
+}
+
+fn check_cancelled(progress: &dyn Progress) -> Result<(), BakeError> {
+    if progress.is_cancelled() { Err(BakeError::Cancelled) } else { Ok(()) }
+}
+
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let value = work();
+    *seconds += started.elapsed().as_secs_f64();
+    value
+}
+
+fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) -> Result<Option<SunPath>, BakeError> {
+    let request = match (&settings.sun, scene.sun_direction) {
+        (SunRequest::Keyed { json, north_deg }, _) => return Ok(Some(sun::parse_keyed(json, *north_deg)?)),
+        (SunRequest::SceneOr(_), Some(direction)) => {
+            let radius_rad = sun::SUN_ANGULAR_RADIUS_DEG.to_radians();
+            return Ok(Some(sun::fixed_light(direction, radius_rad)?));
+        }
+        (SunRequest::Day(request) | SunRequest::SceneOr(request), _) => request,
+    };
+    match sun::day(request)? {
+        DayOutcome::Path(path) => Ok(Some(path)),
+        DayOutcome::NoSun { highest_elevation_deg, .. } => {
+            warnings.push(format!(
+                "the sun does not rise at latitude {} on {}: its centre stays at least {:.1} degrees below the horizon, so no \
+                 sun is baked; choose another --date for one",
+                request.latitude_deg, request.date, -highest_elevation_deg
+            ));
+            Ok(None)
+        }
+    }
+}
