@@ -1,4 +1,4 @@
-//! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`write`] writes one; only [`read`] reads one.
+//! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`mod@write`] writes one; only [`mod@read`] reads one.
 
 pub mod manifest;
 pub mod read;
