@@ -61,13 +61,17 @@ fn plan_for_pages(
 ) -> Result<Plan, AtlasError> {
     let mut count = pages;
     loop {
-        if let Some(plan) = densest(settings, count, items, meter) {
-            if count > pages {
-                warnings.push(format!(
-                    "the charts take {count} pages of {} texels; a larger --size takes fewer",
-                    settings.page_size_texels
-                ));
+        if let Some((plan, density)) = densest(settings, count, items, meter) {
+            if count == pages {
+                return Ok(plan);
             }
+            // One large mesh may have set the density; the rest need not be spread over as many pages.
+            let plan = arrangement(settings, items).compactly(density, count).unwrap_or(plan);
+            warnings.push(format!(
+                "the charts take {} pages of {} texels; a larger --size takes fewer",
+                plan.page_sizes().len(),
+                settings.page_size_texels
+            ));
             return Ok(plan);
         }
         count *= 2;
@@ -77,8 +81,9 @@ fn plan_for_pages(
     }
 }
 
-/// The plan of highest density on this many pages. None if they fit at no density worth having.
-fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) -> Option<Plan> {
+/// The plan of highest density on this many pages, and that density in texels a metre. None if they fit at no density
+/// worth having.
+fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) -> Option<(Plan, f64)> {
     let arrangement = arrangement(settings, items);
     let page = f64::from(settings.page_size_texels);
     let area_m2: f64 = items.iter().map(Item::area_m2).sum();
@@ -104,7 +109,7 @@ fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) 
         }
         step += 1;
     }
-    meter.reach(UNWRAP_SHARE).then_some(best)
+    meter.reach(UNWRAP_SHARE).then_some((best, low))
 }
 
 fn arrangement<'a>(settings: &AtlasSettings, items: &'a [Item]) -> Arrangement<'a> {
