@@ -9,6 +9,8 @@ use crate::sun::DayRequest;
 pub struct BakeSettings {
     /// Which sun.
     pub sun: SunRequest,
+    /// Names of materials that are neither drawn nor baked and cast nothing: outline hulls, sky domes. Usually none.
+    pub leave_out: Vec<String>,
     /// How many texels. Time and bytes grow with their number, so with the square of the density.
     pub density: Density,
     /// Edge of a square page, 64 to 16384. Larger pages pack better; some hardware stops at 8192.
@@ -71,6 +73,7 @@ impl BakeSettings {
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
+            leave_out: Vec::new(),
             density: Density::Pages(1),
             page_size_texels: 2048,
             padding_texels: 2,

@@ -2,6 +2,7 @@
 
 mod entries;
 mod layout;
+mod leave_out;
 mod pages;
 
 use crate::atlas::AtlasError;
@@ -17,6 +18,7 @@ use crate::trace::Tracer;
 use crate::visibility::{Engine, RayEngine};
 use entries::{instance_entries, loss_warning, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
+use leave_out::{darkness_warning, leave_out};
 use pages::PageBaker;
 use std::path::Path;
 use std::time::Instant;
@@ -36,6 +38,14 @@ pub enum BakeError {
     /// The scene's light makes no path.
     #[error(transparent)]
     Light(#[from] LightError),
+    /// A material to be left out is not there.
+    #[error("the scene has no material named {name:?} to leave out; it has: {known}")]
+    NoSuchMaterial {
+        /// The name given.
+        name: String,
+        /// Names there are, as far as fits.
+        known: String,
+    },
     /// The scene cannot be laid out.
     #[error("{0}; give another --size, --padding or --texels-per-metre")]
     Atlas(AtlasError),
@@ -116,7 +126,8 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     progress.start(Stage::Load, 0);
     let started = Instant::now();
     let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
-    let scene = scene::load(scene_file, &limits)?;
+    let mut scene = scene::load(scene_file, &limits)?;
+    leave_out(&mut scene, &settings.leave_out)?;
     let mut warnings = scene.warnings.clone();
     let path = sun_path(settings, &scene, &mut warnings)?;
     let plan = EffectPlan::new(&scene, path.as_ref(), "the sun does not rise");
@@ -183,6 +194,7 @@ fn bake_prepared(
     check_cancelled(progress)?;
     writer.finish(&manifest)?;
     warnings.extend(atlas.warnings.iter().cloned());
+    warnings.extend(path.as_ref().and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warning(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
 }

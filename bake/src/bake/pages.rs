@@ -98,6 +98,7 @@ impl<'a> PageBaker<'a> {
         for (sample, lit) in texels.iter().zip(tables.iter().flat_map(IntervalTable::iter)) {
             let found = lit.as_slice().len() as u64;
             self.stats.intervals += found;
+            self.stats.dark_texels += u64::from(found == 0);
             self.stats.most_intervals = self.stats.most_intervals.max(found);
             let loss = encoder.set(sample.texel as usize, &lit);
             self.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);

@@ -65,6 +65,11 @@ pub struct BakeArgs {
     /// Values for everything below that is not given.
     #[arg(long, value_enum, default_value_t = Preset::Standard)]
     pub preset: Preset,
+    /// Leave a material out: it is not drawn, not baked and casts nothing. May be given several times.
+    ///
+    /// For what no sunbeam should meet: outline hulls, sky domes, collision shells.
+    #[arg(long, value_name = "MATERIAL")]
+    pub leave_out: Vec<String>,
     #[command(flatten)]
     pub sun: SunArgs,
     #[command(flatten)]

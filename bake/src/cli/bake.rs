@@ -81,6 +81,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     };
     let cost = &args.cost;
     Ok(BakeSettings {
+        leave_out: args.leave_out.clone(),
         density: cost.texels_per_metre.map_or(preset.density, Density::TexelsPerMetre),
         page_size_texels: cost.size.unwrap_or(preset.page_size_texels),
         padding_texels: cost.padding.unwrap_or(preset.padding_texels),

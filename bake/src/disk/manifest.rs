@@ -190,6 +190,9 @@ pub struct Stats {
     pub charts: u64,
     /// Lit intervals found.
     pub intervals: u64,
+    /// Texels that never see the sun.
+    #[serde(default)]
+    pub dark_texels: u64,
     /// Most lit intervals of any texel.
     pub most_intervals: u64,
     /// Engine and its parameters, as given on the command line.
