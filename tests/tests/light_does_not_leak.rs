@@ -113,6 +113,22 @@ fn the_ground_under_a_slab_is_dark_up_to_its_edge() {
     }
 }
 
+/// B5: a face lying on the ground, a millimetre or a tenth of one above it, hides it up to its edge. At no distance at
+/// all neither of the two is on top, and both keep their light, without speckle.
+#[test]
+fn a_face_lying_on_the_ground_hides_it_up_to_its_edge() {
+    let path = over_the_top(DVec3::X);
+    for (gap_m, expected) in [(1e-3f32, 0.0), (1e-4, 0.0), (0.0, 1.0)] {
+        let face = floor(Vec2::splat(-1.0), Vec2::splat(1.0), gap_m);
+        let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&face).build());
+        // Within a tenth of a metre of the edge, the lowest of the 64 suns does shine in under the gap.
+        for x in [-0.9, -0.5, 0.0, 0.31, 0.9] {
+            let lit = here.lit_by_rays(&path, 64, &here.point_at(DVec3::new(x, 0.0, 0.3), FLOOR));
+            assert_eq!(lit.lit_length(), expected, "{x} m from the middle under {gap_m} m");
+        }
+    }
+}
+
 /// B8.
 #[test]
 fn a_single_sided_quad_casts_from_both_sides() {
