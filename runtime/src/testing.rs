@@ -14,7 +14,7 @@ use sunbake::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
 use sunbake::scene::{Geometry, Scene};
 use sunbake::sun::{SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath};
 use sunbake::trace::Tracer;
-use sunbake::visibility::{Engine, RayEngine};
+use sunbake::visibility::{RayEngine, lit_at};
 
 /// An equinox day at a latitude: up in the east at t = 0, in the south at t = 1/2, down in the west at t = 1.
 pub fn equinox(latitude_deg: f64) -> SunPath {
@@ -104,10 +104,9 @@ fn cell_corners(triangle: u32, columns: u32, cell: u32) -> [Vec2; 3] {
 
 fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, cell: u32, bits: Bits) -> LaneMaps {
     let tracer = Tracer::new(scene, geometry);
-    let engine = RayEngine::new(&tracer, path, 128);
+    let engine = RayEngine::new(&tracer, std::slice::from_ref(path), 128);
     let edge = columns * cell;
     let mut encoder = PageEncoder::new((edge * edge) as usize, bits, 8);
-    let mut session = engine.session();
     for triangle in 0..geometry.triangles.len() as u32 {
         let [origin, right, _] = cell_corners(triangle, columns, cell);
         for i in 0..cell * cell {
@@ -116,13 +115,14 @@ fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, c
             let inside = inside / (inside.x + inside.y).max(1.0);
             let texel = (origin - 1.5).as_ivec2() + IVec2::new((i % cell) as i32, (i / cell) as i32);
             let barycentric = [f64::from(inside.x), f64::from(inside.y)];
-            let lit = session.lit(&SurfacePoint {
+            let point = SurfacePoint {
                 position_m: geometry.point(triangle as usize, barycentric),
                 normal: geometry.normal(triangle as usize),
                 is_double_sided: scene.material(geometry.instance[triangle as usize] as usize).is_double_sided,
                 triangle,
-            });
-            encoder.set((texel.y as u32 * edge + texel.x as u32) as usize, &lit);
+            };
+            let lit = &lit_at(&engine, &point)[0];
+            encoder.set((texel.y as u32 * edge + texel.x as u32) as usize, lit);
         }
     }
     LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }

@@ -10,7 +10,7 @@ use sunbake::scene::{Geometry, Mesh, Scene};
 use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
-use sunbake::visibility::{Engine, Intervals, RayEngine};
+use sunbake::visibility::{Intervals, RayEngine, lit_at};
 
 /// A scene with what it takes to trace it.
 pub struct Traced {
@@ -47,7 +47,8 @@ impl Traced {
 
     /// When a point sees the sun, by `count` rays.
     pub fn lit_by_rays(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> Intervals {
-        RayEngine::new(&self.tracer, path, count).session().lit(point)
+        let engine = RayEngine::new(&self.tracer, std::slice::from_ref(path), count);
+        lit_at(&engine, point).swap_remove(0)
     }
 }
 

@@ -172,7 +172,7 @@ fn bake_prepared(
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let engine = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals)).map(|path| match settings.engine {
-        EngineChoice::Rays(count) => RayEngine::new(&tracer, path, count),
+        EngineChoice::Rays(count) => RayEngine::new(&tracer, std::slice::from_ref(path), count),
     });
 
     let engine = engine.as_ref().map(|e| e as &dyn Engine);

@@ -10,6 +10,7 @@ use crate::progress::{Progress, Stage};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::visibility::{self, Engine, IntervalTable, Work};
+use rayon::prelude::*;
 use std::time::Instant;
 
 /// Bakes pages, and keeps the account.
@@ -67,20 +68,27 @@ impl<'a> PageBaker<'a> {
         let lanes = match self.engine {
             None => Vec::new(),
             Some(engine) => {
-                let (tables, work) = self.find_lit(engine, &samples.samples).ok_or(BakeError::Cancelled)?;
+                let order = by_tiles(&samples, size.width);
+                let (tables, work) = self.find_lit(engine, &samples, &order).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
-                vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &tables) }]
+                vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &order, &tables) }]
             }
         };
         check_cancelled(self.progress)?;
         Ok(PageMaps { width: size.width, height: size.height, lanes, ao: None })
     }
 
-    fn find_lit(&mut self, engine: &dyn Engine, samples: &[atlas::Sample]) -> Option<(Vec<IntervalTable>, Work)> {
+    /// Answers in the given order of samples.
+    fn find_lit(
+        &mut self,
+        engine: &dyn Engine,
+        PageSamples { samples }: &PageSamples,
+        order: &[u32],
+    ) -> Option<(Vec<IntervalTable>, Work)> {
         self.progress.start(Stage::Visibility, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
-            let point = |i: usize| atlas::surface_point(scene, geometry, &samples[i]);
+            let point = |i: usize| atlas::surface_point(scene, geometry, &samples[order[i] as usize]);
             visibility::find_lit(engine, samples.len(), point, |count| {
                 progress.advance(count as u64);
                 !progress.is_cancelled()
@@ -88,14 +96,21 @@ impl<'a> PageBaker<'a> {
         })
     }
 
-    fn encode(&mut self, page: usize, samples: &PageSamples, tables: &[IntervalTable]) -> Vec<LayerMaps> {
+    fn encode(
+        &mut self,
+        page: usize,
+        samples: &PageSamples,
+        order: &[u32],
+        tables: &[IntervalTable],
+    ) -> Vec<LayerMaps> {
         let PageSamples { samples: texels } = samples;
         self.progress.start(Stage::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let texel_count = size.width as usize * size.height as usize;
         let mut encoder = PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap);
-        for (sample, lit) in texels.iter().zip(tables.iter().flat_map(IntervalTable::iter)) {
+        let in_order = order.iter().map(|&i| &texels[i as usize]);
+        for (sample, lit) in in_order.zip(tables.iter().flat_map(IntervalTable::iter)) {
             let found = lit.as_slice().len() as u64;
             self.stats.intervals += found;
             self.stats.dark_texels += u64::from(found == 0);
@@ -109,4 +124,19 @@ impl<'a> PageBaker<'a> {
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
         encoder.finish()
     }
+}
+
+/// Edge of a tile, in texels.
+const TILE: u32 = 8;
+
+/// Indices of a page's samples, tile by tile, so that what follows one another in the list lies side by side on a surface.
+fn by_tiles(PageSamples { samples }: &PageSamples, width: u32) -> Vec<u32> {
+    let tile = |index: &u32| {
+        let (x, y) = (samples[*index as usize].texel % width, samples[*index as usize].texel / width);
+        (y / TILE, x / TILE)
+    };
+    let mut order: Vec<u32> = (0..samples.len() as u32).collect();
+    // Stable: rows stay in order within a tile.
+    order.par_sort_by_key(tile);
+    order
 }

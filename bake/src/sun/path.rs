@@ -86,6 +86,14 @@ impl SunPath {
         &self.arcs
     }
 
+    /// The path beside this one, nearer to the arcs' axes by `offset_rad`: one lane across the sun's disc, with the same
+    /// hour angle at every `t`.
+    pub fn lane(&self, offset_rad: f64) -> Self {
+        let mut lane = self.clone();
+        lane.arcs.iter_mut().for_each(|arc| arc.declination_rad += offset_rad);
+        lane
+    }
+
     /// The arc that holds at `t` (clamped to [0, 1]).
     pub fn arc_at(&self, t: f64) -> &SunArc {
         self.arcs.iter().find(|a| t < a.t[1]).unwrap_or(&self.arcs[self.arcs.len() - 1])

@@ -14,20 +14,24 @@ pub use rays::RayEngine;
 use crate::atlas::SurfacePoint;
 use rayon::prelude::*;
 
-/// A way to find lit intervals. Implementations: [`RayEngine`].
+/// A way to find lit intervals, along one path or along several side by side (the lanes of a disc). Implementations:
+/// [`RayEngine`].
 pub trait Engine: Sync {
     /// Its name with its parameters, as on the command line.
     fn name(&self) -> String;
+
+    /// How many paths it answers for.
+    fn lane_count(&self) -> usize;
 
     /// Starts on a run of neighbouring points. What a session learns from one point it may use for the next, so long as
     /// no answer depends on it: the same point has the same answer in any session.
     fn session(&self) -> Box<dyn Session + '_>;
 }
 
-/// An engine at work on neighbouring points, one after the other.
+/// An engine at work on neighbouring points.
 pub trait Session {
-    /// When the point sees the sun.
-    fn lit(&mut self, point: &SurfacePoint) -> Intervals;
+    /// Adds when each point sees the sun, in the order of the points; for each point one answer a lane.
+    fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable);
 
     /// Work done since the session started.
     fn work(&self) -> Work;
@@ -38,12 +42,36 @@ pub trait Session {
 pub struct Work {
     /// Rays traced.
     pub rays: u64,
+    /// Hierarchy nodes met.
+    pub nodes: u64,
+    /// Triangles met.
+    pub triangles: u64,
+}
+
+impl std::ops::Add for Work {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            nodes: self.nodes + other.nodes,
+            triangles: self.triangles + other.triangles,
+        }
+    }
+}
+
+/// When one point sees the sun, along each of the engine's lanes.
+pub fn lit_at(engine: &dyn Engine, point: &SurfacePoint) -> Vec<Intervals> {
+    let mut answers = IntervalTable::default();
+    engine.session().lit(std::slice::from_ref(point), &mut answers);
+    answers.iter().collect()
 }
 
 /// How many neighbouring points a session is given.
 const RUN: usize = 1024;
 
-/// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points.
+/// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points, of each
+/// point one for each of the engine's lanes.
 /// `on_progress` gets the number of points that were done and returns false to stop; then there is no answer.
 pub fn find_lit(
     engine: &dyn Engine,
@@ -54,14 +82,13 @@ pub fn find_lit(
     let find_run = |run| {
         let range = run * RUN..point_count.min((run + 1) * RUN);
         let mut session = engine.session();
+        let points: Vec<SurfacePoint> = range.clone().map(&point).collect();
         let mut table = IntervalTable::default();
-        for index in range.clone() {
-            table.push(&session.lit(&point(index)));
-        }
+        session.lit(&points, &mut table);
         on_progress(range.len()).then(|| (table, session.work()))
     };
     let runs: Vec<(IntervalTable, Work)> =
         (0..point_count.div_ceil(RUN)).into_par_iter().map(find_run).collect::<Option<_>>()?;
-    let work = Work { rays: runs.iter().map(|(_, work)| work.rays).sum() };
+    let work = runs.iter().fold(Work::default(), |sum, (_, work)| sum + *work);
     Some((runs.into_iter().map(|(table, _)| table).collect(), work))
 }

@@ -7,7 +7,7 @@
 //! Suns below the horizon or behind the surface cost no ray. Each sun's last occluder is tried before the hierarchy is
 //! walked, since what shades a texel mostly shades its neighbour.
 
-use super::{Engine, Intervals, Session, Work};
+use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::{Direction, Occluder, Tracer};
@@ -16,44 +16,65 @@ use glam::DVec3;
 /// N evenly spaced suns.
 pub struct RayEngine<'a> {
     tracer: &'a Tracer,
-    /// The sun at the middle of each step; none where it is below the horizon.
-    suns: Vec<Option<Direction>>,
+    /// For each lane, the sun at the middle of each step; none where it is below the horizon.
+    suns: Vec<Vec<Option<Direction>>>,
 }
 
 impl<'a> RayEngine<'a> {
-    /// Places `count` suns along the path.
-    pub fn new(tracer: &'a Tracer, path: &SunPath, count: usize) -> Self {
+    /// Places `count` suns along each lane's path.
+    pub fn new(tracer: &'a Tracer, lanes: &[SunPath], count: usize) -> Self {
         let middle = |step: usize| (step as f64 + 0.5) / count as f64;
-        let sun = |step| Some(path.direction(middle(step))).filter(|d| d.y > 0.0).map(Direction::new);
-        Self { tracer, suns: (0..count).map(sun).collect() }
+        let sun = |path: &SunPath, step| Some(path.direction(middle(step))).filter(|d| d.y > 0.0).map(Direction::new);
+        let suns = |path| (0..count).map(|step| sun(path, step)).collect();
+        Self { tracer, suns: lanes.iter().map(suns).collect() }
     }
 }
 
 impl Engine for RayEngine<'_> {
     fn name(&self) -> String {
-        format!("rays:{}", self.suns.len())
+        format!("rays:{}", self.suns.first().map_or(0, Vec::len))
+    }
+
+    fn lane_count(&self) -> usize {
+        self.suns.len()
     }
 
     fn session(&self) -> Box<dyn Session + '_> {
-        Box::new(RaySession { engine: self, last_occluder: vec![None; self.suns.len()], work: Work::default() })
+        let last_occluder = self.suns.iter().map(|suns| vec![None; suns.len()]).collect();
+        Box::new(RaySession { engine: self, last_occluder, work: Work::default() })
     }
 }
 
 struct RaySession<'a> {
     engine: &'a RayEngine<'a>,
-    last_occluder: Vec<Option<Occluder>>,
+    /// For each lane and sun.
+    last_occluder: Vec<Vec<Option<Occluder>>>,
     work: Work,
 }
 
 impl Session for RaySession<'_> {
-    fn lit(&mut self, point: &SurfacePoint) -> Intervals {
-        let tracer = self.engine.tracer;
-        let origins = [point.normal, -point.normal].map(|side| tracer.lift(point.position_m, side, point.triangle));
-        let count = self.engine.suns.len();
+    fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
+        for point in points {
+            let sides = [point.normal, -point.normal];
+            let origins = sides.map(|side| self.engine.tracer.lift(point.position_m, side, point.triangle));
+            for lane in 0..self.engine.suns.len() {
+                answers.push(&self.lit_along(lane, point, &origins));
+            }
+        }
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl RaySession<'_> {
+    fn lit_along(&mut self, lane: usize, point: &SurfacePoint, origins: &[DVec3; 2]) -> Intervals {
+        let count = self.engine.suns[lane].len();
         let mut lit = Vec::new();
         let mut start = None;
         for step in 0..count {
-            match (self.is_lit(point, &origins, step), start) {
+            match (self.is_lit(lane, point, origins, step), start) {
                 (true, None) => start = Some(step),
                 (false, Some(first)) => {
                     lit.push([first as f64 / count as f64, step as f64 / count as f64]);
@@ -66,14 +87,8 @@ impl Session for RaySession<'_> {
         Intervals::from_unsorted(lit)
     }
 
-    fn work(&self) -> Work {
-        self.work
-    }
-}
-
-impl RaySession<'_> {
-    fn is_lit(&mut self, point: &SurfacePoint, origins: &[DVec3; 2], step: usize) -> bool {
-        let Some(sun) = &self.engine.suns[step] else { return false };
+    fn is_lit(&mut self, lane: usize, point: &SurfacePoint, origins: &[DVec3; 2], step: usize) -> bool {
+        let Some(sun) = &self.engine.suns[lane][step] else { return false };
         let above = point.normal.dot(sun.unit());
         let origin = match above {
             above if above > 0.0 => origins[0],
@@ -82,13 +97,13 @@ impl RaySession<'_> {
         };
         self.work.rays += 1;
         let tracer = self.engine.tracer;
-        if self.last_occluder[step].is_some_and(|last| tracer.is_occluded_by(last, origin, sun)) {
+        if self.last_occluder[lane][step].is_some_and(|last| tracer.is_occluded_by(last, origin, sun)) {
             return false;
         }
         match tracer.occluder(origin, sun) {
             None => true,
             occluder => {
-                self.last_occluder[step] = occluder;
+                self.last_occluder[lane][step] = occluder;
                 false
             }
         }
