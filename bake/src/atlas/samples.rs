@@ -29,6 +29,8 @@ const PULL_CENTRE: f64 = 0.125;
 const BORDER_TEXELS: f64 = 1.0 / 64.0;
 /// Rows that are worked on at once; 64 rows of 4096 texels fill 2 MiB.
 const BAND_ROWS: u32 = 64;
+/// Edge of a tile of texels that are looked at together.
+const TILE: u32 = 16;
 /// Added to the squared distance of triangles without area, so that every other triangle comes before them.
 const NO_AREA_PENALTY: f64 = 4.0;
 /// Area, in texels, below which a triangle counts as having none.
@@ -94,6 +96,22 @@ pub fn sample_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32)
     let bands = bands(&patches, size);
     let samples = bands.par_iter().enumerate().map(|(band, members)| sample_band(&patches, members, band as u32, size));
     PageSamples { samples: samples.collect::<Vec<_>>().concat() }
+}
+
+/// Indices of a page's samples, tile by tile, so that what follows one another in the list lies side by side on a surface.
+pub fn by_tiles(PageSamples { samples }: &PageSamples, size: PageSize) -> Vec<u32> {
+    let place = |index: &u32| {
+        let (x, y) = (samples[*index as usize].texel % size.width, samples[*index as usize].texel / size.width);
+        (y / TILE, x / TILE, interleaved(x % TILE, y % TILE))
+    };
+    let mut order: Vec<u32> = (0..samples.len() as u32).collect();
+    order.par_sort_unstable_by_key(place);
+    order
+}
+
+/// Bits of two numbers in turn (Morton's order): what is close in it is close in the plane.
+fn interleaved(x: u32, y: u32) -> u32 {
+    (0..TILE.ilog2()).map(|bit| ((x >> bit & 1) << (2 * bit)) | ((y >> bit & 1) << (2 * bit + 1))).sum()
 }
 
 /// The sampled point in the scene.

@@ -10,7 +10,6 @@ use crate::progress::{Progress, Stage};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::visibility::{self, Engine, IntervalTable, Work};
-use rayon::prelude::*;
 use std::time::Instant;
 
 /// Bakes pages, and keeps the account.
@@ -68,7 +67,7 @@ impl<'a> PageBaker<'a> {
         let lanes = match self.engine {
             None => Vec::new(),
             Some(engine) => {
-                let order = by_tiles(&samples, size.width);
+                let order = atlas::by_tiles(&samples, size);
                 let (tables, work) = self.find_lit(engine, &samples, &order).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
                 vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &order, &tables) }]
@@ -124,19 +123,4 @@ impl<'a> PageBaker<'a> {
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
         encoder.finish()
     }
-}
-
-/// Edge of a tile, in texels.
-const TILE: u32 = 8;
-
-/// Indices of a page's samples, tile by tile, so that what follows one another in the list lies side by side on a surface.
-fn by_tiles(PageSamples { samples }: &PageSamples, width: u32) -> Vec<u32> {
-    let tile = |index: &u32| {
-        let (x, y) = (samples[*index as usize].texel % width, samples[*index as usize].texel / width);
-        (y / TILE, x / TILE)
-    };
-    let mut order: Vec<u32> = (0..samples.len() as u32).collect();
-    // Stable: rows stay in order within a tile.
-    order.par_sort_by_key(tile);
-    order
 }

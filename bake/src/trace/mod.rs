@@ -17,9 +17,11 @@ mod direction;
 pub use direction::Direction;
 
 use crate::scene::{Geometry, Scene};
+pub(crate) use cuts::CutView;
 use cuts::Cuts;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
 use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
@@ -100,6 +102,32 @@ impl Tracer {
         point_m + side * lift_m + inwards.clamp_length_max(lift_m)
     }
 
+    /// Corners of every triangle that blocks light, tracer space. Their index here is what an [`Occluder`] holds.
+    pub(crate) fn corners(&self) -> &[[Vec3; 3]] {
+        &self.corners
+    }
+
+    /// Whether a triangle has holes cut by alpha.
+    #[inline]
+    pub(crate) fn has_holes(&self, id: u32) -> bool {
+        self.cuts.has_holes(id as usize)
+    }
+
+    /// A triangle with holes.
+    pub(crate) fn cut(&self, id: u32) -> Option<CutView<'_>> {
+        self.cuts.view(id as usize)
+    }
+
+    /// Scale of tracer space: a power of two.
+    pub(crate) fn tracer_from_bake(&self) -> f64 {
+        self.tracer_from_bake
+    }
+
+    /// How far back along the ray shadow rays start, in tracer space.
+    pub(crate) fn run_up(&self) -> f64 {
+        self.run_up
+    }
+
     /// Whether anything solid lies along the direction.
     pub fn is_occluded(&self, origin_m: DVec3, direction: &Direction) -> bool {
         self.occluder(origin_m, direction).is_some()
@@ -168,6 +196,33 @@ impl Tracer {
         let met = direction.meet(origin, &self.corners[id])?;
         self.cuts.is_solid(id, met.1).then_some(met)
     }
+}
+
+/// A node of a binary hierarchy.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BinaryNode {
+    /// Low and high corner of its box.
+    pub bounds: [Vec3; 2],
+    /// How many primitives it holds itself; none if it has children.
+    pub count: u32,
+    /// Its first primitive's place in the order, or its first child's index; the second child follows it.
+    pub first: u32,
+}
+
+/// A binary hierarchy over boxes, root first, and the order of its primitives: at most eight a leaf. Empty for no boxes.
+pub(crate) fn binary_hierarchy(boxes: &[[Vec3; 2]]) -> (Vec<BinaryNode>, Vec<u32>) {
+    if boxes.is_empty() {
+        return (Vec::new(), Vec::new());
+    }
+    let boxes: Vec<Padded> = boxes.iter().map(|&[low, high]| Padded(Aabb::new(low.into(), high.into()))).collect();
+    let params = BvhBuildParams { max_prims_per_leaf: 8, ..BvhBuildParams::medium_build() };
+    let bvh = build_bvh2(&boxes, params, &mut std::time::Duration::default());
+    let node = |node: &obvhs::bvh2::node::Bvh2Node| BinaryNode {
+        bounds: [node.aabb().min.into(), node.aabb().max.into()],
+        count: node.prim_count,
+        first: node.first_index,
+    };
+    (bvh.nodes.iter().map(node).collect(), bvh.primitive_indices)
 }
 
 /// A ray for obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.

@@ -5,9 +5,11 @@
 //! side the sun is on, so one list serves both of its faces: at any moment the sun stands before just one of them, and
 //! the run time knows which.
 
+mod exact;
 pub mod intervals;
 mod rays;
 
+pub use exact::ExactEngine;
 pub use intervals::{IntervalTable, Intervals};
 pub use rays::RayEngine;
 

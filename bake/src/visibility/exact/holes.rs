@@ -1,0 +1,104 @@
+//! Which part of a hidden span a triangle with holes really hides.
+//!
+//! While the sun moves, the point where its ray pierces the triangle runs along a curve, and the texture coordinate there is
+//! `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of the edge normals with the direction. A border between
+//! two columns of texels, `u = k / width`, is crossed where `sum(w_i (u_i width - k)) = 0`: again a half space through the
+//! point, whose ends are known in closed form. So the curve is followed from texel to texel, and no texel is skipped but
+//! such as are crossed in less than [`LEAST_STEP`]. Squares of texels that are solid or clear throughout are crossed in one
+//! step. In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of a half space once more.
+
+use super::arc::{Declination, half_space, of_diamond};
+use crate::trace::CutView;
+use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
+
+/// Smallest step along the curve, in diamond angle: some tens of microseconds of a day.
+const LEAST_STEP: f64 = 1e-9;
+/// Most steps that one triangle is followed for; they grow where there would be more.
+const MOST_STEPS: f64 = 65_536.0;
+
+/// Spans found; few, as a rule.
+pub(super) type Parts = SmallVec<[[f64; 2]; 8]>;
+
+/// A triangle with holes, seen from a point along one lane.
+pub(super) struct Pierced<'a> {
+    cut: CutView<'a>,
+    /// For each corner, the normal of the opposite edge, positive on the triangle, with the declination worked in: its
+    /// product with (cos h, sin h, 1) is the corner's weight.
+    weights: [DVec3; 3],
+    /// Their sum, and their sums weighted by each texture coordinate.
+    total: DVec3,
+    along: [DVec3; 2],
+}
+
+impl<'a> Pierced<'a> {
+    /// From the corners relative to the point, arc frame.
+    pub fn new(cut: CutView<'a>, [a, b, c]: [DVec3; 3], declination: Declination) -> Self {
+        let normals = [b.cross(c), c.cross(a), a.cross(b)];
+        let side = if a.dot(normals[0]) < 0.0 { -1.0 } else { 1.0 };
+        let scale = DVec3::new(declination.cos, declination.cos, declination.sin) * side;
+        let weights = normals.map(|n| n * scale);
+        let blend = |values: [f64; 3]| weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2];
+        let along = [cut.texel_uvs.map(|uv| uv.x), cut.texel_uvs.map(|uv| uv.y)].map(blend);
+        Self { total: blend([1.0; 3]), along, weights, cut }
+    }
+
+    /// Adds the solid parts of a span that lies on the triangle.
+    pub fn solid_parts(&self, [start, end]: [f64; 2], parts: &mut Parts) {
+        let least_step = ((end - start) / MOST_STEPS).max(LEAST_STEP);
+        let mut at = start;
+        while at < end {
+            let texel = self.texel((at + least_step).min(0.5 * (at + end)));
+            let (square, verdict) = self.cut.uniform(texel);
+            let next = if self.cut.has_texture() { self.next_border(square, at + least_step, end) } else { end };
+            match verdict {
+                Some(true) => join(parts, [at, next]),
+                Some(false) => {}
+                None => self.solid_in_texel(texel, [at, next], parts),
+            }
+            at = next;
+        }
+    }
+
+    /// The texel that is pierced at a diamond angle.
+    fn texel(&self, u: f64) -> [i64; 2] {
+        let [x, y] = of_diamond(u);
+        let direction = DVec3::new(x, y, (x * x + y * y).sqrt());
+        let uv = DVec2::new(self.along[0].dot(direction), self.along[1].dot(direction)) / self.total.dot(direction);
+        [uv.x, uv.y].map(|at| at.floor().clamp(-1e9, 1e9) as i64)
+    }
+
+    /// Where the curve first leaves the square after `from`, or `end`.
+    fn next_border(&self, square: [[i64; 2]; 2], from: f64, end: f64) -> f64 {
+        let mut next = end;
+        for (along, borders) in self.along.iter().zip(square) {
+            for border in borders {
+                let n = *along - self.total * border as f64;
+                for &u in half_space(n.x, n.y, n.z).as_slice().iter().flatten() {
+                    if from <= u && u < next {
+                        next = u;
+                    }
+                }
+            }
+        }
+        next
+    }
+
+    fn solid_in_texel(&self, texel: [i64; 2], [start, end]: [f64; 2], parts: &mut Parts) {
+        let alpha = self.cut.alpha_of(texel);
+        let [a, b, c] = self.cut.alphas.map(|own| own * alpha - self.cut.cutoff);
+        let n = self.weights[0] * a + self.weights[1] * b + self.weights[2] * c;
+        for span in half_space(n.x, n.y, n.z).as_slice() {
+            join(parts, [span[0].max(start), span[1].min(end)]);
+        }
+    }
+}
+
+/// Adds a span that starts no earlier than those before it.
+fn join(parts: &mut Parts, span: [f64; 2]) {
+    match parts.last_mut() {
+        _ if span[0] >= span[1] => {}
+        Some(last) if last[1] >= span[0] => last[1] = last[1].max(span[1]),
+        _ => parts.push(span),
+    }
+}

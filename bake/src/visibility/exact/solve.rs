@@ -1,0 +1,235 @@
+//! Which part of an arc each of eight triangles hides from a point, in `f64` and in closed form.
+//!
+//! Theory (DESIGN, section 4): with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle
+//! hides where all three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in
+//! closed form; their intersection is what the triangle hides.
+//!
+//! Watertight: `a x b` and `b x a` are exact opposites in floating point, and every step from there to the ends of a span
+//! treats opposites alike. So the triangles on both sides of an edge end at the same number, and no gap is left.
+//! That holds because corners are turned into the arc's frame by one sequence of operations wherever they are, and because
+//! nothing is fused: additions and products round the same at every level of SIMD.
+//!
+//! Triangles whose plane is within the run-up of shadow rays need a case of their own (`near.rs`), and those with holes
+//! too (`holes.rs`): both are told apart here.
+
+use super::wide::{Leaf, WIDTH};
+use fearless_simd::{f64x8, mask64x8, prelude::*};
+use glam::{DMat3, DVec3};
+
+/// Corners of eight triangles: by corner, axis and triangle.
+pub(super) type Corners = [[[f64; WIDTH]; 3]; 3];
+
+/// Up to eight triangles, corners in the arc's frame.
+#[derive(Default)]
+pub(super) struct Packet {
+    pub corners: Corners,
+    pub ids: [u32; WIDTH],
+    pub count: usize,
+    /// When it last closed something.
+    pub last_use: u32,
+}
+
+impl Packet {
+    /// Adds a triangle; there must be room.
+    pub fn push(&mut self, id: u32, corners: [DVec3; 3]) {
+        self.ids[self.count] = id;
+        for (lanes, corner) in self.corners.iter_mut().zip(corners) {
+            for (lane, value) in lanes.iter_mut().zip(corner.to_array()) {
+                lane[self.count] = value;
+            }
+        }
+        self.count += 1;
+    }
+}
+
+/// A leaf's corners in the arc's frame.
+pub(super) fn leaf_corners<S: Simd>(simd: S, leaf: &Leaf, rotation: &DMat3, corners: &mut Corners) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for (corner, turned) in leaf.corners.iter().zip(corners) {
+                let x = widened(simd, &corner[0]);
+                let y = widened(simd, &corner[1]);
+                let z = widened(simd, &corner[2]);
+                for k in 0..3 {
+                    let row = rotation.row(k);
+                    (x * row.x + y * row.y + z * row.z).store_slice(&mut turned[k]);
+                }
+            }
+        },
+    );
+}
+
+#[inline(always)]
+fn widened<S: Simd>(simd: S, values: &[f32; WIDTH]) -> f64x8<S> {
+    let mut wide = [0.0; WIDTH];
+    for k in 0..WIDTH {
+        wide[k] = f64::from(values[k]);
+    }
+    f64x8::from_slice(simd, &wide)
+}
+
+/// One corner in the arc's frame, by the same operations.
+#[inline]
+pub(super) fn turned(corner: glam::Vec3, rotation: &DMat3) -> DVec3 {
+    let [x, y, z] = corner.to_array().map(f64::from);
+    let along = |k: usize| {
+        let row = rotation.row(k);
+        x * row.x + y * row.y + z * row.z
+    };
+    DVec3::new(along(0), along(1), along(2))
+}
+
+/// What eight triangles hide at one declination, within the hull of what is asked about.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Hidden {
+    /// Which hide something.
+    pub mask: u32,
+    pub low: [f64; WIDTH],
+    pub high: [f64; WIDTH],
+    /// Which have up to three holes in their span, given by `cuts`.
+    pub split: u32,
+    /// For each edge, the span between `low` and `high` that is not hidden after all, if its end is above its start.
+    pub cuts: [[[f64; WIDTH]; 2]; 3],
+}
+
+/// A declination and which part of its arc is asked about, in diamond angles; nothing if the second is not above the first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked {
+    pub cos: f64,
+    pub sin: f64,
+    pub hull: [f64; 2],
+}
+
+/// What eight triangles hide from a point at some declinations. Returns the triangles whose plane is within the run-up
+/// (given squared), of which the rest of the answer is not to be believed.
+pub(super) fn hide<S: Simd>(
+    simd: S,
+    corners: &Corners,
+    origin: DVec3,
+    run_up2: f64,
+    asked: &[Asked],
+    hidden: &mut [Hidden],
+) -> u32 {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let edges = edges(simd, corners, origin, run_up2);
+            for (asked, hidden) in asked.iter().zip(hidden) {
+                if asked.hull[0] < asked.hull[1] {
+                    hide_at(simd, &edges, asked, hidden);
+                } else {
+                    hidden.mask = 0;
+                }
+            }
+            edges.near
+        },
+    )
+}
+
+/// Edge normals of eight triangles, turned so that they are positive where the triangle hides.
+struct Edges<S: Simd> {
+    normals: [[f64x8<S>; 3]; 3],
+    near: u32,
+}
+
+#[inline(always)]
+fn edges<S: Simd>(simd: S, corners: &Corners, origin: DVec3, run_up2: f64) -> Edges<S> {
+    let a = relative(simd, &corners[0], origin);
+    let b = relative(simd, &corners[1], origin);
+    let c = relative(simd, &corners[2], origin);
+    let (ab, bc, ca) = (cross(a, b), cross(b, c), cross(c, a));
+    let area = [ab[0] + bc[0] + ca[0], ab[1] + bc[1] + ca[1], ab[2] + bc[2] + ca[2]];
+    let volume = dot(a, bc);
+    let near = (volume * volume).simd_le(dot(area, area) * run_up2);
+    let one = f64x8::splat(simd, 1.0);
+    let side = volume.simd_lt(f64x8::splat(simd, 0.0)).select(one * -1.0, one);
+    let normals = [scaled(ab, side), scaled(bc, side), scaled(ca, side)];
+    Edges { normals, near: near.to_bitmask() as u32 }
+}
+
+#[inline(always)]
+fn relative<S: Simd>(simd: S, corner: &[[f64; WIDTH]; 3], origin: DVec3) -> [f64x8<S>; 3] {
+    [
+        f64x8::from_slice(simd, &corner[0]) - origin.x,
+        f64x8::from_slice(simd, &corner[1]) - origin.y,
+        f64x8::from_slice(simd, &corner[2]) - origin.z,
+    ]
+}
+
+#[inline(always)]
+fn cross<S: Simd>(a: [f64x8<S>; 3], b: [f64x8<S>; 3]) -> [f64x8<S>; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn dot<S: Simd>(a: [f64x8<S>; 3], b: [f64x8<S>; 3]) -> f64x8<S> {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn scaled<S: Simd>(a: [f64x8<S>; 3], scale: f64x8<S>) -> [f64x8<S>; 3] {
+    [a[0] * scale, a[1] * scale, a[2] * scale]
+}
+
+#[inline(always)]
+fn hide_at<S: Simd>(simd: S, edges: &Edges<S>, asked: &Asked, hidden: &mut Hidden) {
+    let (before, after) = (f64x8::splat(simd, -3.0), f64x8::splat(simd, 3.0));
+    let (mut low, mut high) = (before, after);
+    hidden.split = 0;
+    for k in 0..3 {
+        let edge = edges.normals[k];
+        let span = span(simd, edge[0] * asked.cos, edge[1] * asked.cos, edge[2] * asked.sin);
+        let crosses = span.start.simd_gt(span.end) & span.is_part;
+        let has_start = !(crosses & span.start.simd_gt(asked.hull[1]));
+        let has_end = !(crosses & span.end.simd_lt(asked.hull[0]) & has_start);
+        let is_split = crosses & has_start & has_end;
+        low = low.max((!has_start | is_split).select(before, span.start));
+        high = high.min((!has_end | is_split).select(after, span.end));
+        let split = is_split.to_bitmask() as u32;
+        if split != 0 {
+            hidden.split |= split;
+            is_split.select(span.end, after).store_slice(&mut hidden.cuts[k][0]);
+            is_split.select(span.start, before).store_slice(&mut hidden.cuts[k][1]);
+        } else {
+            hidden.cuts[k] = [[3.0; WIDTH], [-3.0; WIDTH]];
+        }
+    }
+    let alive = low.simd_lt(high) & low.simd_lt(asked.hull[1]) & high.simd_gt(asked.hull[0]);
+    hidden.mask = alive.to_bitmask() as u32;
+    if hidden.mask != 0 {
+        low.store_slice(&mut hidden.low);
+        high.store_slice(&mut hidden.high);
+    }
+}
+
+/// Where eight functions `a cos h + b sin h + c` are not negative: see [`super::arc::half_space`], its scalar twin.
+struct Span<S: Simd> {
+    start: f64x8<S>,
+    end: f64x8<S>,
+    /// Neither everywhere nor nowhere.
+    is_part: mask64x8<S>,
+}
+
+#[inline(always)]
+fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> Span<S> {
+    let zero = f64x8::splat(simd, 0.0);
+    let d = a * a + b * b - c * c;
+    let is_part = d.simd_gt(zero);
+    let everywhere = c.simd_ge(zero);
+    let w = d.max(zero).sqrt();
+    let (ca, cb, wa, wb) = (c * a, c * b, w * a, w * b);
+    let start = diamond(simd, wb - ca, zero - cb - wa);
+    let end = diamond(simd, zero - ca - wb, wa - cb);
+    let far = f64x8::splat(simd, 3.0);
+    let whole_start = everywhere.select(zero - far, far);
+    Span { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
+}
+
+#[inline(always)]
+fn diamond<S: Simd>(simd: S, x: f64x8<S>, y: f64x8<S>) -> f64x8<S> {
+    let zero = f64x8::splat(simd, 0.0);
+    let r = y / (x.abs() + y.abs());
+    let side = y.simd_lt(zero).select(f64x8::splat(simd, -2.0), f64x8::splat(simd, 2.0));
+    x.simd_lt(zero).select(side - r, r)
+}
