@@ -23,6 +23,10 @@ pub struct BakeSettings {
     /// Most layers of four intervals, 1 to 16. A texel with more intervals keeps the list that is wrong for the
     /// shortest time. Layers that no texel needs are not written.
     pub layer_cap: usize,
+    /// Lanes across the sun's disc: 1, as the chapter has it, 3 or 5. One lane leaves edges hard that run along the sun's
+    /// path; with more they soften in as many steps. Maps, and what playback reads, grow with the number. A light without
+    /// width has one lane whatever is asked.
+    pub lane_count: usize,
     /// How lit intervals are found.
     pub engine: EngineChoice,
     /// Threads, 0 for one per core. The result does not depend on it.
@@ -79,6 +83,7 @@ impl BakeSettings {
             padding_texels: 2,
             bits: Bits::Sixteen,
             layer_cap: 4,
+            lane_count: 1,
             engine: EngineChoice::Rays(256),
             threads: 0,
             max_memory_bytes: 8 << 30,

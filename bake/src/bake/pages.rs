@@ -5,13 +5,22 @@ use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
 use crate::disk::write::SetWriter;
 use crate::loss::LossTally;
-use crate::maps::{Lane, LaneMaps, LayerMaps, PageEncoder, PageMaps};
+use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::{Progress, Stage};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
-use crate::visibility::{self, Engine, IntervalTable, Work};
+use crate::visibility::{self, Engine, IntervalTable, Intervals, Work};
 use rayon::prelude::*;
 use std::time::Instant;
+
+/// Who answers when texels see the sun.
+#[derive(Clone, Copy)]
+pub(super) struct Sun<'a> {
+    /// Answers for as many lanes as there are.
+    pub engine: &'a dyn Engine,
+    /// The lanes across the disc.
+    pub lanes: &'a [Lane],
+}
 
 /// Bakes pages, and keeps the account.
 pub(super) struct PageBaker<'a> {
@@ -19,7 +28,7 @@ pub(super) struct PageBaker<'a> {
     geometry: &'a Geometry,
     atlas: &'a Atlas,
     settings: &'a BakeSettings,
-    engine: Option<&'a dyn Engine>,
+    sun: Option<Sun<'a>>,
     progress: &'a dyn Progress,
     pub stats: Stats,
     pub loss: LossTally,
@@ -31,7 +40,7 @@ impl<'a> PageBaker<'a> {
         geometry: &'a Geometry,
         atlas: &'a Atlas,
         settings: &'a BakeSettings,
-        engine: Option<&'a dyn Engine>,
+        sun: Option<Sun<'a>>,
         progress: &'a dyn Progress,
         seconds: StageSeconds,
     ) -> Self {
@@ -39,12 +48,12 @@ impl<'a> PageBaker<'a> {
             triangles: scene.triangle_count() as u64,
             dropped_triangles: scene.dropped.total(),
             charts: atlas.chart_count as u64,
-            engine: engine.map_or("none".into(), Engine::name),
+            engine: sun.map_or("none".into(), |sun| sun.engine.name()),
             threads: rayon::current_num_threads(),
             seconds,
             ..Stats::default()
         };
-        Self { scene, geometry, atlas, settings, engine, progress, stats, loss: LossTally::default() }
+        Self { scene, geometry, atlas, settings, sun, progress, stats, loss: LossTally::default() }
     }
 
     pub fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<AtlasEntry>, BakeError> {
@@ -65,13 +74,13 @@ impl<'a> PageBaker<'a> {
         self.stats.seconds.unwrap += started.elapsed().as_secs_f64();
         self.stats.texels += samples.samples.len() as u64;
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
-        let lanes = match self.engine {
+        let lanes = match self.sun {
             None => Vec::new(),
-            Some(engine) => {
+            Some(sun) => {
                 let order = by_tiles(&samples, size.width);
-                let (tables, work) = self.find_lit(engine, &samples, &order).ok_or(BakeError::Cancelled)?;
+                let (tables, work) = self.find_lit(sun.engine, &samples, &order).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
-                vec![LaneMaps { lane: Lane::CENTRE, layers: self.encode(index, &samples, &order, &tables) }]
+                self.encode(index, sun.lanes, &samples, &order, &tables)
             }
         };
         check_cancelled(self.progress)?;
@@ -99,30 +108,49 @@ impl<'a> PageBaker<'a> {
     fn encode(
         &mut self,
         page: usize,
+        lanes: &[Lane],
         samples: &PageSamples,
         order: &[u32],
         tables: &[IntervalTable],
-    ) -> Vec<LayerMaps> {
+    ) -> Vec<LaneMaps> {
         let PageSamples { samples: texels } = samples;
         self.progress.start(Stage::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let texel_count = size.width as usize * size.height as usize;
-        let mut encoder = PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap);
-        let in_order = order.iter().map(|&i| &texels[i as usize]);
-        for (sample, lit) in in_order.zip(tables.iter().flat_map(IntervalTable::iter)) {
-            let found = lit.as_slice().len() as u64;
-            self.stats.intervals += found;
-            self.stats.dark_texels += u64::from(found == 0);
-            self.stats.most_intervals = self.stats.most_intervals.max(found);
-            let loss = encoder.set(sample.texel as usize, &lit);
+        let encoder = |&lane| (lane, PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap));
+        let mut encoders: Vec<(Lane, PageEncoder)> = lanes.iter().map(encoder).collect();
+        let mut answers = tables.iter().flat_map(IntervalTable::iter);
+        for sample in order.iter().map(|&i| &texels[i as usize]) {
+            let loss = self.encode_texel(&mut encoders, sample.texel as usize, &mut answers);
             self.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
         }
         for copy in atlas::gutter(size, samples, self.settings.padding_texels) {
-            encoder.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
+            let source = texels[copy.sample as usize].texel as usize;
+            encoders.iter_mut().for_each(|(_, encoder)| encoder.copy(copy.texel as usize, source));
         }
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
-        encoder.finish()
+        encoders.into_iter().map(|(lane, encoder)| LaneMaps { lane, layers: encoder.finish() }).collect()
+    }
+
+    /// Stores a texel's answers, one a lane; its loss is the lanes' mean by weight.
+    fn encode_texel(
+        &mut self,
+        encoders: &mut [(Lane, PageEncoder)],
+        texel: usize,
+        answers: &mut impl Iterator<Item = Intervals>,
+    ) -> EncodeLoss {
+        let mut loss = EncodeLoss::default();
+        let mut found = 0;
+        for ((lane, encoder), lit) in encoders.iter_mut().zip(answers) {
+            let count = lit.as_slice().len() as u64;
+            found += count;
+            self.stats.most_intervals = self.stats.most_intervals.max(count);
+            loss.add_lane(&encoder.set(texel, &lit), lane.weight);
+        }
+        self.stats.intervals += found;
+        self.stats.dark_texels += u64::from(found == 0);
+        loss
     }
 }
 
