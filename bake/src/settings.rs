@@ -29,6 +29,8 @@ pub struct BakeSettings {
     pub lane_count: usize,
     /// How lit intervals are found.
     pub engine: EngineChoice,
+    /// Whether to write, for each page, where storing lost minutes. Takes 24 bytes a texel of a page while it is baked.
+    pub loss_map: bool,
     /// Threads, 0 for one per core. The result does not depend on it.
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
@@ -85,6 +87,7 @@ impl BakeSettings {
             layer_cap: 4,
             lane_count: 1,
             engine: EngineChoice::Rays(256),
+            loss_map: false,
             threads: 0,
             max_memory_bytes: 8 << 30,
         }

@@ -75,6 +75,8 @@ fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Re
 pub(super) const BYTES_PER_SAMPLE: u64 = 100;
 /// Bytes that each lane more than one adds to that: its intervals.
 const BYTES_PER_LANE: u64 = 60;
+/// Bytes that a texel of a loss map takes: its numbers, and their copies while they are written.
+const BYTES_PER_LOST: u64 = 24;
 /// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
@@ -85,7 +87,8 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
     // Codes are held twice while they are written; two layers are what a scene usually needs.
     let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2 * lanes;
     let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
-    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1)) + triangles;
+    let loss_map = if settings.loss_map { BYTES_PER_LOST } else { 0 };
+    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1) + loss_map) + triangles;
     if needed <= settings.max_memory_bytes {
         return Ok(());
     }

@@ -174,13 +174,12 @@ fn bake_prepared(
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
-    let lanes = path.map_or(Vec::new(), |p| Lane::across_disc(settings.lane_count, p.angular_radius_rad));
-    let lane_paths: Vec<SunPath> = path.iter().flat_map(|p| lanes.iter().map(|l| p.lane(l.offset_rad))).collect();
+    let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| match settings.engine {
         EngineChoice::Rays(count) => RayEngine::new(&tracer, &lane_paths, count),
     });
-
-    let sun = engine.as_ref().map(|engine| Sun { engine: engine as &dyn Engine, lanes: &lanes });
+    let duration_min = path.map_or(0.0, |p| p.duration_min);
+    let sun = engine.as_ref().map(|engine| Sun { engine: engine as &dyn Engine, lanes: &lanes, duration_min });
     let mut pages = PageBaker::new(scene, &geometry, atlas, settings, sun, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
@@ -188,7 +187,6 @@ fn bake_prepared(
 
     let PageBaker { mut stats, loss, .. } = pages;
     stats.bytes = writer.bytes();
-    let duration_min = path.map_or(0.0, |p| p.duration_min);
     let manifest = Manifest {
         stats,
         atlases,
@@ -202,6 +200,13 @@ fn bake_prepared(
     warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warning(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
+}
+
+/// So many lanes across the sun's disc, and the path of each.
+fn lanes_of(path: &SunPath, count: usize) -> (Vec<Lane>, Vec<SunPath>) {
+    let lanes = Lane::across_disc(count, path.angular_radius_rad);
+    let paths = lanes.iter().map(|lane| path.lane(lane.offset_rad)).collect();
+    (lanes, paths)
 }
 
 fn check_cancelled(progress: &dyn Progress) -> Result<(), BakeError> {

@@ -5,6 +5,7 @@ use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
 use crate::disk::write::SetWriter;
 use crate::loss::LossTally;
+use crate::loss_map::LossMap;
 use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::{Progress, Stage};
 use crate::scene::{Geometry, Scene};
@@ -20,6 +21,8 @@ pub(super) struct Sun<'a> {
     pub engine: &'a dyn Engine,
     /// The lanes across the disc.
     pub lanes: &'a [Lane],
+    /// Minutes of the path.
+    pub duration_min: f64,
 }
 
 /// Bakes pages, and keeps the account.
@@ -32,6 +35,8 @@ pub(super) struct PageBaker<'a> {
     progress: &'a dyn Progress,
     pub stats: Stats,
     pub loss: LossTally,
+    /// Of the page at hand, if it was asked for.
+    loss_map: Option<LossMap>,
 }
 
 impl<'a> PageBaker<'a> {
@@ -53,7 +58,7 @@ impl<'a> PageBaker<'a> {
             seconds,
             ..Stats::default()
         };
-        Self { scene, geometry, atlas, settings, sun, progress, stats, loss: LossTally::default() }
+        Self { scene, geometry, atlas, settings, sun, progress, stats, loss: LossTally::default(), loss_map: None }
     }
 
     pub fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<AtlasEntry>, BakeError> {
@@ -61,7 +66,12 @@ impl<'a> PageBaker<'a> {
         for index in 0..self.atlas.pages.len() {
             let maps = self.bake(index)?;
             self.progress.start(Stage::Write, 0);
-            let write = || writer.write_page(index, &maps, self.settings.bits);
+            let loss_map = self.loss_map.take();
+            let write = || {
+                let entry = writer.write_page(index, &maps, self.settings.bits)?;
+                let loss_map = loss_map.map(|map| writer.write_loss_map(index, &map)).transpose()?;
+                Ok::<_, BakeError>(AtlasEntry { loss_map, ..entry })
+            };
             entries.push(timed(&mut self.stats.seconds.write, write)?);
         }
         Ok(entries)
@@ -80,7 +90,7 @@ impl<'a> PageBaker<'a> {
                 let order = by_tiles(&samples, size.width);
                 let (tables, work) = self.find_lit(sun.engine, &samples, &order).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
-                self.encode(index, sun.lanes, &samples, &order, &tables)
+                self.encode(index, sun, &samples, &order, &tables)
             }
         };
         check_cancelled(self.progress)?;
@@ -108,7 +118,7 @@ impl<'a> PageBaker<'a> {
     fn encode(
         &mut self,
         page: usize,
-        lanes: &[Lane],
+        sun: Sun,
         samples: &PageSamples,
         order: &[u32],
         tables: &[IntervalTable],
@@ -119,10 +129,14 @@ impl<'a> PageBaker<'a> {
         let size = self.atlas.pages[page];
         let texel_count = size.width as usize * size.height as usize;
         let encoder = |&lane| (lane, PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap));
-        let mut encoders: Vec<(Lane, PageEncoder)> = lanes.iter().map(encoder).collect();
+        let mut encoders: Vec<(Lane, PageEncoder)> = sun.lanes.iter().map(encoder).collect();
+        self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
         let mut answers = tables.iter().flat_map(IntervalTable::iter);
         for sample in order.iter().map(|&i| &texels[i as usize]) {
             let loss = self.encode_texel(&mut encoders, sample.texel as usize, &mut answers);
+            if let Some(map) = &mut self.loss_map {
+                map.set(sample.texel as usize, &loss, sun.duration_min);
+            }
             self.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
         }
         for copy in atlas::gutter(size, samples, self.settings.padding_texels) {

@@ -77,6 +77,12 @@ pub struct BakeArgs {
     /// What to bake, of: intervals (when the sun is seen). This version bakes nothing else.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = parse_only)]
     pub only: Vec<Only>,
+    /// Show where --layers and --bits lost minutes: a picture and the numbers for each page.
+    ///
+    /// Writes lost_minutes.N.png, from black (nothing lost) over violet, red and orange to pale yellow (as many minutes as
+    /// the summary and sunbake.json say), and lost_minutes.N.exr with the channels `layers` and `bits`, in minutes.
+    #[arg(long)]
+    pub loss_map: bool,
     /// Print what would be baked and why, and bake nothing.
     #[arg(long)]
     pub explain: bool,

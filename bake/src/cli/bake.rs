@@ -89,6 +89,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
         engine: cost.engine.unwrap_or(preset.engine),
+        loss_map: args.loss_map,
         threads: cost.threads,
         max_memory_bytes: cost.max_memory.unwrap_or(preset.max_memory_bytes),
         ..preset

@@ -29,6 +29,9 @@ pub fn of(manifest: &Manifest) -> String {
         let merged = manifest.error.merged_texels;
         let merging = || format!("{}; {merged} texels", loss(&manifest.error.merge_min));
         lines.line("merging", if merged == 0 { "nothing lost".into() } else { merging() });
+        if let Some(text) = loss_maps(manifest) {
+            lines.line("loss map", text);
+        }
         lines.line("engine", engine(manifest));
     }
     lines.line("cost", cost(manifest));
@@ -138,6 +141,14 @@ fn times(manifest: &Manifest) -> String {
 
 fn loss(loss: &LossEntry) -> String {
     format!("{:.4} min a texel on average, 99 % under {:.4}, worst {:.4}", loss.mean, loss.p99, loss.worst)
+}
+
+/// Where the loss maps are, and what their brightest colours stand for.
+fn loss_maps(manifest: &Manifest) -> Option<String> {
+    let maps = manifest.atlases.iter().filter_map(|atlas| atlas.loss_map.as_ref());
+    let texts: Vec<String> =
+        maps.map(|map| format!("{} (brightest: {} min)", map.picture, map.scale_max_min)).collect();
+    (!texts.is_empty()).then(|| texts.join(", "))
 }
 
 fn engine(manifest: &Manifest) -> String {

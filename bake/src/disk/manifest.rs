@@ -123,6 +123,22 @@ pub struct AtlasEntry {
     pub ao: Option<String>,
     /// Bent normals.
     pub bent: Option<String>,
+    /// Where storing this page lost minutes, if the bake was asked to show it. Nothing else needs these files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss_map: Option<LossMapEntry>,
+}
+
+/// Minutes that storing lost, texel by texel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LossMapEntry {
+    /// PNG: minutes lost in all, from black over violet, red and orange to pale yellow; transparent where no surface is.
+    pub picture: String,
+    /// OpenEXR of two `f32` channels, in minutes: `layers`, lost for want of slots, and `bits`, lost by rounding.
+    pub numbers: String,
+    /// How colours follow minutes: `sqrt`, so that a quarter of `scale_max_min` has the middle colour.
+    pub scale: String,
+    /// Minutes that the brightest colour stands for.
+    pub scale_max_min: f64,
 }
 
 /// A lane across the sun's disc. Its times follow the path with the offset added to every arc's declination, and its window
