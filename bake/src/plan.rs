@@ -57,8 +57,8 @@ pub struct EffectPlan {
 }
 
 impl EffectPlan {
-    /// Decides from the scene and the path; `no_sun` says why there is none.
-    pub fn new(scene: &Scene, path: Option<&SunPath>, no_sun: &str) -> Self {
+    /// Decides from the scene, the path and the number of lanes asked for; `no_sun` says why there is no path.
+    pub fn new(scene: &Scene, path: Option<&SunPath>, lane_count: usize, no_sun: &str) -> Self {
         let decide = |effect, is_on, why: String| Decision { effect, is_on, why };
         let radius_deg = path.map_or(0.0, |p| p.angular_radius_rad.to_degrees());
         let cut = count(scene, |m| matches!(m.alpha, Alpha::Cut { .. }));
@@ -68,7 +68,7 @@ impl EffectPlan {
             decisions: vec![
                 decide(Effect::SunIntervals, path.is_some(), sun),
                 decide(Effect::Penumbra, radius_deg > 0.0, format!("the light's radius is {radius_deg:.3} degrees")),
-                decide(Effect::DiscLanes, false, "the sun is taken as a line along its path".into()),
+                decide(Effect::DiscLanes, path.is_some() && has_lanes(radius_deg, lane_count), lanes(path, lane_count)),
                 decide(Effect::AlphaCut, cut > 0, format!("{cut} drawn surfaces have holes cut by alpha")),
                 decide(
                     Effect::DoubleSided,
@@ -80,6 +80,11 @@ impl EffectPlan {
         }
     }
 
+    /// How many lanes the bake has, of as many as were asked for.
+    pub fn lane_count(&self, asked: usize) -> usize {
+        if self.is_on(Effect::DiscLanes) { asked } else { 1 }
+    }
+
     /// Whether an effect is part of the bake.
     pub fn is_on(&self, effect: Effect) -> bool {
         self.decisions.iter().any(|d| d.effect == effect && d.is_on)
@@ -89,6 +94,22 @@ impl EffectPlan {
     pub fn entries(&self) -> Vec<EffectEntry> {
         let entry = |d: &Decision| EffectEntry { effect: d.effect.name().into(), on: d.is_on, why: d.why.clone() };
         self.decisions.iter().map(entry).collect()
+    }
+}
+
+fn has_lanes(radius_deg: f64, lane_count: usize) -> bool {
+    radius_deg > 0.0 && lane_count > 1
+}
+
+/// Why there are several lanes, or are not.
+fn lanes(path: Option<&SunPath>, lane_count: usize) -> String {
+    match path.map(|path| path.angular_radius_rad) {
+        None => "there is no sun".into(),
+        Some(0.0) => "a light without width has no disc to cut into lanes".into(),
+        Some(_) if lane_count < 2 => "the sun is taken as a line along its path; --lanes 3 or 5 cuts its disc".into(),
+        Some(_) => format!(
+            "--lanes {lane_count}: edges along the path soften in {lane_count} steps, for {lane_count} times the maps"
+        ),
     }
 }
 

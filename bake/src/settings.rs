@@ -23,8 +23,14 @@ pub struct BakeSettings {
     /// Most layers of four intervals, 1 to 16. A texel with more intervals keeps the list that is wrong for the
     /// shortest time. Layers that no texel needs are not written.
     pub layer_cap: usize,
+    /// Lanes across the sun's disc: 1, as the chapter has it, 3 or 5. One lane leaves edges hard that run along the sun's
+    /// path; with more they soften in as many steps. Maps, and what playback reads, grow with the number. A light without
+    /// width has one lane whatever is asked.
+    pub lane_count: usize,
     /// How lit intervals are found.
     pub engine: EngineChoice,
+    /// Whether to write, for each page, where storing lost minutes. Takes 24 bytes a texel of a page while it is baked.
+    pub loss_map: bool,
     /// Threads, 0 for one per core. The result does not depend on it.
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
@@ -79,7 +85,9 @@ impl BakeSettings {
             padding_texels: 2,
             bits: Bits::Sixteen,
             layer_cap: 4,
+            lane_count: 1,
             engine: EngineChoice::Rays(256),
+            loss_map: false,
             threads: 0,
             max_memory_bytes: 8 << 30,
         }

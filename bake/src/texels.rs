@@ -3,7 +3,7 @@
 
 use crate::atlas::{self, Atlas, Sample};
 use crate::disk::read::BakedSet;
-use crate::maps::stored_intervals;
+use crate::maps::{Bits, LaneMaps, stored_intervals};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
 use crate::trace::Tracer;
 use glam::DVec3;
@@ -30,10 +30,24 @@ pub struct Texel {
     pub origin: [f64; 3],
     /// Where rays towards suns behind the plane start, if those count.
     pub origin_back: Option<[f64; 3]>,
-    /// When the texel sees the sun, as stored, lane by lane.
+    /// When the texel sees the sun, as stored; of several lanes, the middle one.
     pub lit: Vec<[f64; 2]>,
+    /// Every lane's times, where a set has several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lanes: Vec<TexelLane>,
     /// Ambient occlusion as stored, 0 is occluded, if the set has it.
     pub ao: Option<f64>,
+}
+
+/// What is stored of one texel along one lane.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TexelLane {
+    /// Declination less the centre's.
+    pub offset_deg: f64,
+    /// Share of the disc's area.
+    pub weight: f64,
+    /// When the texel sees the lane.
+    pub lit: Vec<[f64; 2]>,
 }
 
 /// Draws `count` covered texels (all, if there are fewer), in page and row order. The same seed draws the same ones.
@@ -64,7 +78,7 @@ fn describe(
     let point = atlas::surface_point(scene, geometry, sample);
     let world = |p: DVec3| (p + scene.centre_m).to_array();
     let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
-    let lit = |lane: &crate::maps::LaneMaps| stored_intervals(&lane.layers, sample.texel as usize, set.bits);
+    let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
     Texel {
         atlas: page,
         x: sample.texel % maps.width,
@@ -75,8 +89,17 @@ fn describe(
         double_sided: point.is_double_sided,
         origin: origin(point.normal),
         origin_back: point.is_double_sided.then(|| origin(-point.normal)),
-        lit: maps.lanes.first().map(lit).unwrap_or_default(),
+        lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
+        lanes: if lanes.len() > 1 { lanes } else { Vec::new() },
         ao: maps.ao.as_ref().map(|ao| f64::from(ao[sample.texel as usize]) / 65_535.0),
+    }
+}
+
+fn of_lane(LaneMaps { lane, layers }: &LaneMaps, texel: usize, bits: Bits) -> TexelLane {
+    TexelLane {
+        offset_deg: lane.offset_rad.to_degrees(),
+        weight: lane.weight,
+        lit: stored_intervals(layers, texel, bits),
     }
 }
 

@@ -8,13 +8,10 @@ use sunbake_shaders::{Filter, LaneVariant, PageVariant};
 
 /// What programs that read a page must know of it. `radius_rad` is the sun's angular radius.
 pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant {
-    let lane = |lane: &sunbake::maps::LaneMaps| {
-        let offset = if radius_rad > 0.0 { lane.lane.offset_rad / radius_rad } else { 0.0 };
-        LaneVariant {
-            layer_count: lane.layers.len() as u32,
-            weight: lane.lane.weight as f32,
-            chord: (1.0 - offset * offset).max(0.0).sqrt() as f32,
-        }
+    let lane = |lane: &sunbake::maps::LaneMaps| LaneVariant {
+        layer_count: lane.layers.len() as u32,
+        weight: lane.lane.weight as f32,
+        chord: lane.lane.chord(radius_rad) as f32,
     };
     PageVariant { max_code: bits.max_code(), lanes: page.lanes.iter().map(lane).collect(), has_ao: page.ao.is_some() }
 }

@@ -10,7 +10,7 @@ use crate::technique::{BakedCpu, BakedGpu, Technique};
 use glam::{DVec3, IVec2, Vec2};
 use sunbake::atlas::SurfacePoint;
 use sunbake::disk::manifest::InstanceEntry;
-use sunbake::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
+use sunbake::maps::{Bits, Lane, LaneMaps, LayerMaps, PageEncoder, PageMaps};
 use sunbake::scene::{Geometry, Scene};
 use sunbake::sun::{SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath};
 use sunbake::trace::Tracer;
@@ -47,6 +47,11 @@ pub fn standing_sun(direction: DVec3, angular_radius_rad: f64) -> SunPath {
 /// Bakes a scene whose meshes share no vertices between triangles: each triangle of each instance has a square of `cell`
 /// texels on a page of its own making. Without a path, a set without a sun.
 pub fn bake(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits) -> Stage {
+    bake_lanes(scene, path, cell, bits, 1)
+}
+
+/// The same, with so many lanes across the sun's disc.
+pub fn bake_lanes(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits, lane_count: usize) -> Stage {
     let mut scene = scene;
     let geometry = Geometry::new(&scene);
     let triangles = geometry.triangles.len() as u32;
@@ -54,8 +59,14 @@ pub fn bake(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits) -> Stage
     let edge = columns * cell;
     separate_meshes(&mut scene);
     let entries = lay_out(&mut scene, &geometry, columns, cell);
-    let lanes = path.as_ref().map(|path| bake_lane(&scene, &geometry, path, columns, cell, bits));
-    let pages = vec![PageMaps { width: edge, height: edge, lanes: lanes.into_iter().collect(), ao: None }];
+    let lanes = |path: &SunPath| Lane::across_disc(lane_count, path.angular_radius_rad);
+    let bake_lane = |path: &SunPath, lane: Lane| LaneMaps {
+        lane,
+        layers: layers_along(&scene, &geometry, &path.lane(lane.offset_rad), columns, cell, bits),
+    };
+    let baked = |path: &SunPath| lanes(path).into_iter().map(|lane| bake_lane(path, lane)).collect();
+    let lanes = path.as_ref().map(baked).unwrap_or_default();
+    let pages = vec![PageMaps { width: edge, height: edge, lanes, ao: None }];
     Stage::new(scene, &entries, pages, bits, path).expect("a set made by code agrees with itself")
 }
 
@@ -102,7 +113,14 @@ fn cell_corners(triangle: u32, columns: u32, cell: u32) -> [Vec2; 3] {
     [Vec2::new(low, low), Vec2::new(high, low), Vec2::new(low, high)].map(|corner| base + corner)
 }
 
-fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, cell: u32, bits: Bits) -> LaneMaps {
+fn layers_along(
+    scene: &Scene,
+    geometry: &Geometry,
+    path: &SunPath,
+    columns: u32,
+    cell: u32,
+    bits: Bits,
+) -> Vec<LayerMaps> {
     let tracer = Tracer::new(scene, geometry);
     let engine = RayEngine::new(&tracer, std::slice::from_ref(path), 128);
     let edge = columns * cell;
@@ -125,7 +143,7 @@ fn bake_lane(scene: &Scene, geometry: &Geometry, path: &SunPath, columns: u32, c
             encoder.set((texel.y as u32 * edge + texel.x as u32) as usize, lit);
         }
     }
-    LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }
+    encoder.finish()
 }
 
 /// A moment of a stage drawn on the GPU and by its twin: how far they agree, to 1/255, on visibility and on the picture.

@@ -6,7 +6,7 @@ use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, block, opaque};
 use sunbake_runtime::gpu::{Census, Gpu};
 use sunbake_runtime::technique::{BakedGpu, Technique};
-use sunbake_runtime::testing::{bake, equinox, view};
+use sunbake_runtime::testing::{bake, bake_lanes, equinox, view};
 use sunbake_runtime::{Filter, Moment, Shot, Stage};
 
 fn census(stage: &Stage, draw_visibility: bool) -> Census {
@@ -44,6 +44,22 @@ fn a_plain_scene_needs_three_pipelines_and_one_pair_of_textures() {
     assert_eq!(census(&stage, false), expected);
     // Visibility alone needs no sky.
     assert_eq!(census(&stage, true), Census { pipelines: 2, ..expected });
+}
+
+#[test]
+fn lanes_cost_layers_and_nothing_else() {
+    let stage = |lane_count| {
+        let cube = SceneBuilder::new().soup(&cube()).build();
+        bake_lanes(cube, Some(equinox(35.0)), 8, Bits::Sixteen, lane_count)
+    };
+    let one = census(&stage(1), false);
+    for lane_count in [3, 5] {
+        let stage = stage(lane_count);
+        let layers: u64 = stage.pages[0].lanes.iter().map(|lane| lane.layers.len() as u64).sum();
+        assert!(layers >= lane_count as u64);
+        let texels = u64::from(stage.pages[0].width) * u64::from(stage.pages[0].height);
+        assert_eq!(census(&stage, false), Census { map_bytes: texels * layers * 16, ..one });
+    }
 }
 
 #[test]

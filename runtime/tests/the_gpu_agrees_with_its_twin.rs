@@ -7,7 +7,7 @@ use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque};
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
-use sunbake_runtime::testing::{bake, equinox, table_line, twins, view};
+use sunbake_runtime::testing::{bake, bake_lanes, equinox, table_line, twins, view};
 use sunbake_runtime::{Filter, Shot, Stage};
 
 fn gpu() -> Gpu {
@@ -106,6 +106,20 @@ fn posts_on_a_floor() {
     let stage = bake(posts(), Some(equinox(35.0)), 20, Bits::Sixteen);
     for (name, filter) in [("posts bilinear", Filter::Bilinear), ("posts nearest", Filter::Nearest)] {
         assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
+    }
+}
+
+#[test]
+fn posts_under_a_disc_of_lanes() {
+    let gpu = gpu();
+    for lane_count in [3, 5] {
+        let mut wide = equinox(35.0);
+        wide.angular_radius_rad = 0.03;
+        let stage = bake_lanes(posts(), Some(wide), 16, Bits::Sixteen, lane_count);
+        assert_eq!(stage.pages[0].lanes.len(), lane_count);
+        let name = format!("posts, {lane_count} lanes");
+        let eye = DVec3::new(5.0, 4.0, 9.0);
+        assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), Filter::Bilinear));
     }
 }
 

@@ -73,22 +73,31 @@ fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Re
 /// Bytes a covered texel takes while its page is baked: its sample, its intervals (three, as a town has on average, and
 /// the vectors around them) and its share of the loss tally.
 pub(super) const BYTES_PER_SAMPLE: u64 = 100;
+/// Bytes that each lane more than one adds to that: its intervals.
+const BYTES_PER_LANE: u64 = 60;
+/// Bytes that a texel of a loss map takes: its numbers, and their copies while they are written.
+const BYTES_PER_LOST: u64 = 24;
 /// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
 /// Refuses pages of a size whose bake would need more memory than allowed.
 pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -> Result<(), BakeError> {
     let texels = u64::from(page_size_texels).pow(2);
+    let lanes = settings.lane_count as u64;
     // Codes are held twice while they are written; two layers are what a scene usually needs.
-    let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2;
+    let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2 * lanes;
     let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
-    let needed = codes + texels * BYTES_PER_SAMPLE + triangles;
+    let loss_map = if settings.loss_map { BYTES_PER_LOST } else { 0 };
+    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1) + loss_map) + triangles;
     if needed <= settings.max_memory_bytes {
         return Ok(());
     }
     Err(BakeError::Memory {
-        what: format!("a page of {page_size_texels} x {page_size_texels} texels"),
-        smaller: "--size",
+        what: match lanes {
+            1 => format!("a page of {page_size_texels} x {page_size_texels} texels"),
+            _ => format!("a page of {page_size_texels} x {page_size_texels} texels in {lanes} lanes"),
+        },
+        smaller: if lanes > 1 { "--size or --lanes" } else { "--size" },
         needed_mib: needed >> 20,
         allowed_mib: settings.max_memory_bytes >> 20,
     })

@@ -9,6 +9,7 @@ use crate::atlas::AtlasError;
 use crate::disk::manifest::{Manifest, StageSeconds};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge};
+use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan};
 use crate::progress::{Progress, Stage};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
@@ -19,7 +20,7 @@ use crate::visibility::{Engine, RayEngine};
 use entries::{instance_entries, loss_warning, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
 use leave_out::{darkness_warning, leave_out};
-use pages::PageBaker;
+use pages::{PageBaker, Sun};
 use std::path::Path;
 use std::time::Instant;
 
@@ -130,7 +131,7 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     leave_out(&mut scene, &settings.leave_out)?;
     let mut warnings = scene.warnings.clone();
     let path = sun_path(settings, &scene, &mut warnings)?;
-    let plan = EffectPlan::new(&scene, path.as_ref(), "the sun does not rise");
+    let plan = EffectPlan::new(&scene, path.as_ref(), settings.lane_count, "the sun does not rise");
     Ok(Prepared { scene, path, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
 }
 
@@ -162,6 +163,7 @@ fn bake_prepared(
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
     let Prepared { scene, path, plan, .. } = prepared;
+    let settings = &BakeSettings { lane_count: plan.lane_count(settings.lane_count), ..settings.clone() };
     check_memory(scene, settings, settings.page_size_texels)?;
     check_cancelled(progress)?;
     let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
@@ -171,19 +173,20 @@ fn bake_prepared(
     progress.start(Stage::Bvh, 0);
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
-    let engine = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals)).map(|path| match settings.engine {
-        EngineChoice::Rays(count) => RayEngine::new(&tracer, std::slice::from_ref(path), count),
+    let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
+    let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
+    let engine = path.map(|_| match settings.engine {
+        EngineChoice::Rays(count) => RayEngine::new(&tracer, &lane_paths, count),
     });
-
-    let engine = engine.as_ref().map(|e| e as &dyn Engine);
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine, progress, seconds);
+    let duration_min = path.map_or(0.0, |p| p.duration_min);
+    let sun = engine.as_ref().map(|engine| Sun { engine: engine as &dyn Engine, lanes: &lanes, duration_min });
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, sun, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
     let PageBaker { mut stats, loss, .. } = pages;
     stats.bytes = writer.bytes();
-    let duration_min = path.as_ref().map_or(0.0, |p| p.duration_min);
     let manifest = Manifest {
         stats,
         atlases,
@@ -194,9 +197,16 @@ fn bake_prepared(
     check_cancelled(progress)?;
     writer.finish(&manifest)?;
     warnings.extend(atlas.warnings.iter().cloned());
-    warnings.extend(path.as_ref().and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
+    warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warning(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
+}
+
+/// So many lanes across the sun's disc, and the path of each.
+fn lanes_of(path: &SunPath, count: usize) -> (Vec<Lane>, Vec<SunPath>) {
+    let lanes = Lane::across_disc(count, path.angular_radius_rad);
+    let paths = lanes.iter().map(|lane| path.lane(lane.offset_rad)).collect();
+    (lanes, paths)
 }
 
 fn check_cancelled(progress: &dyn Progress) -> Result<(), BakeError> {

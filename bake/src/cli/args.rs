@@ -30,8 +30,8 @@ pub enum Command {
     /// Print some covered texels of a set as JSON lines.
     ///
     /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the sun
-    /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json) and ao. With these, any
-    /// ray tracer can check a bake.
+    /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
+    /// where there are several) and ao. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
 }
 
@@ -77,6 +77,12 @@ pub struct BakeArgs {
     /// What to bake, of: intervals (when the sun is seen). This version bakes nothing else.
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = parse_only)]
     pub only: Vec<Only>,
+    /// Show where --layers and --bits lost minutes: a picture and the numbers for each page.
+    ///
+    /// Writes lost_minutes.N.png, from black (nothing lost) over violet, red and orange to pale yellow (as many minutes as
+    /// the summary and sunbake.json say), and lost_minutes.N.exr with the channels `layers` and `bits`, in minutes.
+    #[arg(long)]
+    pub loss_map: bool,
     /// Print what would be baked and why, and bake nothing.
     #[arg(long)]
     pub explain: bool,
@@ -138,6 +144,12 @@ pub struct CostArgs {
     /// Layers that no texel needs are not written. What does not fit is merged at the least loss, and reported.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
     pub layers: Option<u32>,
+    /// Lanes across the sun's disc.
+    ///
+    /// One lane takes the sun as a line along its path, which leaves shadow edges hard that run along it. With 3 or 5 they
+    /// soften, in as many steps. Bytes grow with the number, and so does rays' time.
+    #[arg(long, value_name = "1|3|5", value_parser = parse_lanes, default_value = "1")]
+    pub lanes: usize,
     /// How to find the times: rays:N asks N suns, 2 to 65536. [default: rays:64, 256 or 1024, by preset]
     #[arg(long, value_name = "ENGINE", value_parser = parse_engine)]
     pub engine: Option<EngineChoice>,
@@ -204,6 +216,11 @@ fn parse_bits(text: &str) -> Result<Bits, String> {
     count.ok_or_else(|| format!("`{text}` is no depth of a stored time: give 8 or 16"))
 }
 
+fn parse_lanes(text: &str) -> Result<usize, String> {
+    let count = text.parse().ok().filter(|n| [1, 3, 5].contains(n));
+    count.ok_or_else(|| format!("`{text}` is no number of lanes: give 1, 3 or 5"))
+}
+
 fn parse_window(text: &str) -> Result<[f64; 2], String> {
     sunbake::sun::parse_window(text).map_err(|e| e.to_string())
 }
@@ -250,6 +267,14 @@ mod tests {
         assert_eq!(parse_bytes("77"), Ok(77));
         for bad in ["", "G", "8T", "-1", "0", "99999999999999G"] {
             assert!(parse_bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn lanes_are_one_three_or_five() {
+        assert_eq!(["1", "3", "5"].map(parse_lanes), [Ok(1), Ok(3), Ok(5)]);
+        for bad in ["", "0", "2", "7", "-3", "three"] {
+            assert!(parse_lanes(bad).is_err(), "{bad}");
         }
     }
 

@@ -87,7 +87,9 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         padding_texels: cost.padding.unwrap_or(preset.padding_texels),
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
+        lane_count: cost.lanes,
         engine: cost.engine.unwrap_or(preset.engine),
+        loss_map: args.loss_map,
         threads: cost.threads,
         max_memory_bytes: cost.max_memory.unwrap_or(preset.max_memory_bytes),
         ..preset

@@ -29,6 +29,9 @@ pub fn of(manifest: &Manifest) -> String {
         let merged = manifest.error.merged_texels;
         let merging = || format!("{}; {merged} texels", loss(&manifest.error.merge_min));
         lines.line("merging", if merged == 0 { "nothing lost".into() } else { merging() });
+        if let Some(text) = loss_maps(manifest) {
+            lines.line("loss map", text);
+        }
         lines.line("engine", engine(manifest));
     }
     lines.line("cost", cost(manifest));
@@ -52,10 +55,9 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
     };
     lines.line("atlas", pages);
     let EngineChoice::Rays(rays) = settings.engine;
-    lines.line(
-        "times",
-        format!("{} bits, at most {}", settings.bits.count(), count(settings.layer_cap as u64, "layer")),
-    );
+    let layers = count(settings.layer_cap as u64, "layer");
+    let lanes = in_lanes(prepared.plan.lane_count(settings.lane_count));
+    lines.line("times", format!("{} bits, at most {layers}{lanes}", settings.bits.count()));
     lines.line("engine", format!("rays:{rays}"));
     lines.0
 }
@@ -122,16 +124,31 @@ fn atlas(manifest: &Manifest) -> String {
     format!("{pages}, {texels} texels used ({filled:.0} %), {:.3} texels/m", manifest.scene.texels_per_metre)
 }
 
+/// What several lanes add to a number of layers or intervals.
+fn in_lanes(lanes: usize) -> String {
+    if lanes > 1 { format!(" in each of {lanes} lanes") } else { String::new() }
+}
+
 fn times(manifest: &Manifest) -> String {
     let stats = &manifest.stats;
+    let lanes = manifest.atlases.iter().map(|a| a.lanes.len()).max().unwrap_or(0).max(1);
     let layers = manifest.atlases.iter().flat_map(|a| &a.lanes).map(|lane| lane.layers.len()).max().unwrap_or(0);
-    let mean = stats.intervals as f64 / (stats.texels as f64).max(1.0);
-    let layers = count(layers as u64, "layer");
-    format!("{} bits, {layers}; {mean:.2} intervals a texel, {} at most", manifest.bits, stats.most_intervals)
+    let mean = stats.intervals as f64 / (stats.texels as f64 * lanes as f64).max(1.0);
+    let layers = count(layers as u64, "layer") + &in_lanes(lanes);
+    let a_texel = if lanes > 1 { "a texel and lane" } else { "a texel" };
+    format!("{} bits, {layers}; {mean:.2} intervals {a_texel}, {} at most", manifest.bits, stats.most_intervals)
 }
 
 fn loss(loss: &LossEntry) -> String {
     format!("{:.4} min a texel on average, 99 % under {:.4}, worst {:.4}", loss.mean, loss.p99, loss.worst)
+}
+
+/// Where the loss maps are, and what their brightest colours stand for.
+fn loss_maps(manifest: &Manifest) -> Option<String> {
+    let maps = manifest.atlases.iter().filter_map(|atlas| atlas.loss_map.as_ref());
+    let texts: Vec<String> =
+        maps.map(|map| format!("{} (brightest: {} min)", map.picture, map.scale_max_min)).collect();
+    (!texts.is_empty()).then(|| texts.join(", "))
 }
 
 fn engine(manifest: &Manifest) -> String {

@@ -123,9 +123,26 @@ pub struct AtlasEntry {
     pub ao: Option<String>,
     /// Bent normals.
     pub bent: Option<String>,
+    /// Where storing this page lost minutes, if the bake was asked to show it. Nothing else needs these files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss_map: Option<LossMapEntry>,
 }
 
-/// A lane across the sun's disc.
+/// Minutes that storing lost, texel by texel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LossMapEntry {
+    /// PNG: minutes lost in all, from black over violet, red and orange to pale yellow; transparent where no surface is.
+    pub picture: String,
+    /// OpenEXR of two `f32` channels, in minutes: `layers`, lost for want of slots, and `bits`, lost by rounding.
+    pub numbers: String,
+    /// How colours follow minutes: `sqrt`, so that a quarter of `scale_max_min` has the middle colour.
+    pub scale: String,
+    /// Minutes that the brightest colour stands for.
+    pub scale_max_min: f64,
+}
+
+/// A lane across the sun's disc. Its times follow the path with the offset added to every arc's declination, and its window
+/// is `sqrt(1 - (offset / angular radius)^2)` of the sun's width.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LaneEntry {
     /// Declination less the centre's.
@@ -188,12 +205,12 @@ pub struct Stats {
     pub page_texels: u64,
     /// Charts of the atlas.
     pub charts: u64,
-    /// Lit intervals found.
+    /// Lit intervals found, of all lanes.
     pub intervals: u64,
-    /// Texels that never see the sun.
+    /// Texels that never see the sun, along any lane.
     #[serde(default)]
     pub dark_texels: u64,
-    /// Most lit intervals of any texel.
+    /// Most lit intervals of any texel along one lane.
     pub most_intervals: u64,
     /// Engine and its parameters, as given on the command line.
     pub engine: String,
@@ -226,7 +243,7 @@ pub struct StageSeconds {
     pub write: f64,
 }
 
-/// What storing lost, over covered texels, in minutes of the path.
+/// What storing lost, over covered texels, in minutes of the path. Of several lanes, a texel's loss is their mean by weight.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEntry {
     /// By rounding times to codes.

@@ -106,6 +106,7 @@ fn check_names(manifest: &Manifest) -> Result<(), String> {
     let mut names = vec![&manifest.scene.file];
     for atlas in &manifest.atlases {
         names.extend(atlas.ao.iter().chain(&atlas.bent));
+        names.extend(atlas.loss_map.iter().flat_map(|map| [&map.picture, &map.numbers]));
         names.extend(atlas.lanes.iter().flat_map(|lane| &lane.layers).flat_map(|layer| [&layer.rise, &layer.fall]));
     }
     match names.into_iter().find(|name| !is_plain_file_name(name)) {

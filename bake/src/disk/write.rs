@@ -162,7 +162,7 @@ impl SetWriter {
         let written: Result<Vec<u64>, WriteError> =
             textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits)).collect();
         self.bytes += written?.iter().sum::<u64>();
-        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, ao: None, bent: None })
+        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, ao: None, bent: None, loss_map: None })
     }
 
     /// Bytes written so far.
@@ -202,7 +202,8 @@ impl SetWriter {
         Ok(Some(aside))
     }
 
-    fn write_file(
+    /// Writes a file of the set.
+    pub(super) fn write_file(
         &mut self,
         name: &str,
         write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,

@@ -12,6 +12,15 @@ pub struct EncodeLoss {
     pub quantised_t: f64,
 }
 
+impl EncodeLoss {
+    /// Adds the loss of a lane of this weight.
+    pub fn add_lane(&mut self, lane: &Self, weight: f64) {
+        self.cap.lit_in_error_t += weight * lane.cap.lit_in_error_t;
+        self.cap.dark_in_error_t += weight * lane.cap.dark_in_error_t;
+        self.quantised_t += weight * lane.quantised_t;
+    }
+}
+
 /// Collects the codes of a page, texel by texel, adding layers as texels need them.
 #[derive(Debug, Clone)]
 pub struct PageEncoder {

@@ -7,10 +7,12 @@
 mod cap;
 mod encode;
 mod evaluate;
+mod lanes;
 
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
 pub use evaluate::soft_visibility;
+pub use lanes::Lane;
 
 /// Bits of a stored time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,20 +74,6 @@ impl LayerMaps {
     pub fn unlit(texel_count: usize, bits: Bits) -> Self {
         Self { rise: vec![[bits.max_code(); 4]; texel_count], fall: vec![[0; 4]; texel_count] }
     }
-}
-
-/// One lane across the sun's disc: how far its path lies from the centre's, and its share of the light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lane {
-    /// Declination less the centre's, in radians.
-    pub offset_rad: f64,
-    /// Share of the disc's area; the weights of a page's lanes sum to 1.
-    pub weight: f64,
-}
-
-impl Lane {
-    /// The only lane of a sun that is treated as a line along its path, as the chapter does.
-    pub const CENTRE: Self = Self { offset_rad: 0.0, weight: 1.0 };
 }
 
 /// The layers of one lane on one page.

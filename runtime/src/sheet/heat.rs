@@ -1,27 +1,9 @@
-//! Differences as colours: from black over violet, red and orange to pale yellow, brightness growing all the way, so that
-//! the map reads the same in grey.
+//! Differences as colours.
+
+pub use sunbake::heat::heat;
 
 use crate::image::Raster;
 use crate::texture::srgb_from_linear;
-use glam::Vec3;
-
-/// sRGB stops at even steps.
-const STOPS: [[f32; 3]; 6] = [
-    [16.0, 14.0, 22.0],
-    [72.0, 24.0, 102.0],
-    [158.0, 40.0, 100.0],
-    [226.0, 88.0, 50.0],
-    [250.0, 170.0, 52.0],
-    [252.0, 250.0, 190.0],
-];
-
-/// The colour of a share from 0 to 1.
-pub fn heat(share: f32) -> [u8; 3] {
-    let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
-    let low = (place as usize).min(STOPS.len() - 2);
-    let color = Vec3::from_array(STOPS[low]).lerp(Vec3::from_array(STOPS[low + 1]), place - low as f32);
-    color.to_array().map(|c| c.round() as u8)
-}
 
 /// A picture of differences. Small ones are lifted by the sRGB curve, as codes are, so that they can be seen.
 pub fn heat_map(difference: &Raster<f32>) -> Raster<[u8; 3]> {
