@@ -2,7 +2,9 @@
 
 use crate::atlas::Density;
 use crate::maps::Bits;
-use crate::sun::DayRequest;
+use crate::sun::{DayRequest, SunPath};
+use crate::trace::Tracer;
+use crate::visibility::{BisectEngine, Engine, RayEngine};
 
 /// Everything that decides what a bake makes, and what it may cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,6 +27,9 @@ pub struct BakeSettings {
     pub layer_cap: usize,
     /// How lit intervals are found.
     pub engine: EngineChoice,
+    /// How far off an edge may be, in seconds of the path's clock, for engines that search for edges
+    /// ([`EngineChoice::searches`]); 0.001 to 3600, usually 1. Halving it costs every edge one ray more.
+    pub edge_seconds: f64,
     /// Threads, 0 for one per core. The result does not depend on it.
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
@@ -53,6 +58,34 @@ pub enum EngineChoice {
     /// This many evenly spaced suns, 2 to 65536: edges are off by half a step at most, and what is thinner than a step
     /// may be missed. Time grows with the number.
     Rays(usize),
+    /// This many evenly spaced suns, 2 to 65536, and then every change between two of them halved until it is known to
+    /// [`BakeSettings::edge_seconds`]. What is shorter than a step may be missed. Time grows with the number, and with the
+    /// edges that a texel has.
+    Bisect(usize),
+}
+
+impl EngineChoice {
+    /// Whether it searches for edges, and so heeds [`BakeSettings::edge_seconds`].
+    pub fn searches(self) -> bool {
+        matches!(self, Self::Bisect(_))
+    }
+
+    /// The engine, for the lanes of a sun.
+    pub fn engine<'a>(self, tracer: &'a Tracer, lanes: &[SunPath], edge_seconds: f64) -> Box<dyn Engine + 'a> {
+        match self {
+            Self::Rays(count) => Box::new(RayEngine::new(tracer, lanes, count)),
+            Self::Bisect(count) => Box::new(BisectEngine::new(tracer, lanes, count, edge_seconds)),
+        }
+    }
+}
+
+impl std::fmt::Display for EngineChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Rays(count) => write!(f, "rays:{count}"),
+            Self::Bisect(count) => write!(f, "bisect:{count}"),
+        }
+    }
 }
 
 impl BakeSettings {
@@ -80,6 +113,7 @@ impl BakeSettings {
             bits: Bits::Sixteen,
             layer_cap: 4,
             engine: EngineChoice::Rays(256),
+            edge_seconds: 1.0,
             threads: 0,
             max_memory_bytes: 8 << 30,
         }

@@ -12,10 +12,9 @@ use crate::glb::{self, GlbTooLarge};
 use crate::plan::{Effect, EffectPlan};
 use crate::progress::{Progress, Stage};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
-use crate::settings::{BakeSettings, EngineChoice, SunRequest};
+use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
-use crate::visibility::{Engine, RayEngine};
 use entries::{instance_entries, loss_warning, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
 use leave_out::{darkness_warning, leave_out};
@@ -171,12 +170,12 @@ fn bake_prepared(
     progress.start(Stage::Bvh, 0);
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
-    let engine = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals)).map(|path| match settings.engine {
-        EngineChoice::Rays(count) => RayEngine::new(&tracer, std::slice::from_ref(path), count),
-    });
+    let engine = path
+        .as_ref()
+        .filter(|_| plan.is_on(Effect::SunIntervals))
+        .map(|path| settings.engine.engine(&tracer, std::slice::from_ref(path), settings.edge_seconds));
 
-    let engine = engine.as_ref().map(|e| e as &dyn Engine);
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine, progress, seconds);
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, engine.as_deref(), progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;

@@ -5,9 +5,12 @@
 //! side the sun is on, so one list serves both of its faces: at any moment the sun stands before just one of them, and
 //! the run time knows which.
 
+mod bisect;
 pub mod intervals;
+mod probe;
 mod rays;
 
+pub use bisect::BisectEngine;
 pub use intervals::{IntervalTable, Intervals};
 pub use rays::RayEngine;
 
@@ -15,7 +18,7 @@ use crate::atlas::SurfacePoint;
 use rayon::prelude::*;
 
 /// A way to find lit intervals, along one path or along several side by side (the lanes of a disc). Implementations:
-/// [`RayEngine`].
+/// [`RayEngine`] and [`BisectEngine`].
 pub trait Engine: Sync {
     /// Its name with its parameters, as on the command line.
     fn name(&self) -> String;
