@@ -112,7 +112,7 @@ fn a_needle_hides_the_sun_for_a_third_of_a_second() {
         [at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]
     };
     let mut tried = 0;
-    for azimuth_rad in [0.0, 0.7, 2.0, 3.1415, -2.3] {
+    for azimuth_rad in [0.0, 0.7, 2.0, std::f64::consts::PI, -2.3] {
         let corners @ [a, b, c, d] = needle(azimuth_rad);
         let here = above_a_pedestal(&[[a, b, c], [a, c, d]]);
         let point = here.observer(DVec3::ZERO, DVec3::Y, PEDESTAL);
