@@ -75,6 +75,13 @@ impl Lane {
         spells
     }
 
+    /// Towards the sun as `t` is reached: where arcs do not quite meet, the end of the one before.
+    fn direction_until(&self, t: f64) -> DVec3 {
+        let arcs = self.path.arcs();
+        let arc = arcs.iter().find(|arc| t <= arc.t[1]).unwrap_or(&arcs[arcs.len() - 1]);
+        arc.direction_at_hour_angle(arc.hour_angle_at(t))
+    }
+
     fn step_t(&self) -> f64 {
         1.0 / (self.suns.len() - 1) as f64
     }
@@ -154,14 +161,15 @@ impl Search<'_> {
     fn spell(&mut self, [first_t, last_t]: [f64; 2], side: Side) {
         let step_t = self.lane.step_t();
         let inside = (first_t / step_t) as usize + 1..(last_t / step_t).ceil() as usize;
-        let mut before = self.end(first_t, side, None);
+        let first_sun = self.lane.path.direction(first_t);
+        let mut before = self.end(first_t, first_sun, side, None);
         let mut lit_since = before.is_lit().then_some(first_t);
         for step in inside {
             let now = self.coarse(step, side, before.occluder);
             lit_since = self.advance(before, now, lit_since, side);
             before = now;
         }
-        let end = self.end(last_t, side, before.occluder);
+        let end = self.end(last_t, self.lane.direction_until(last_t), side, before.occluder);
         let lit_since = self.advance(before, end, lit_since, side);
         self.lit.extend(lit_since.map(|since| [since, last_t]));
     }
@@ -198,8 +206,8 @@ impl Search<'_> {
     }
 
     /// The end of a spell. It has no memory of its own, and takes that of the coarse sun next to it.
-    fn end(&mut self, t: f64, side: Side, before: Option<Occluder>) -> Known {
-        let sun = Direction::new(self.lane.path.direction(t));
+    fn end(&mut self, t: f64, sun: DVec3, side: Side, before: Option<Occluder>) -> Known {
+        let sun = Direction::new(sun);
         let beside = (t / self.lane.step_t()).round() as usize;
         self.ask(t, side, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
     }
