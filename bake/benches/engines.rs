@@ -103,7 +103,8 @@ fn bench(name: &str, file: &Path, options: &Options) {
     for some in points.chunks(options.threads) {
         let mut answers: [Vec<IntervalTable>; 2] = [Vec::new(), Vec::new()];
         for (index, engine) in engines.iter().enumerate() {
-            let found: Vec<(IntervalTable, Work, f64)> = pool.install(|| some.par_iter().map(|run| ask(*engine, run)).collect());
+            let found: Vec<(IntervalTable, Work, f64)> =
+                pool.install(|| some.par_iter().map(|run| ask(*engine, run)).collect());
             for (table, done, s) in found {
                 seconds[index] += s;
                 work[index] = work[index] + done;

@@ -1,7 +1,8 @@
 //! Seconds of every stage of a bake, with texels and rays a second: `cargo bench -p sunbake`.
 //!
 //! Our own scene, and three shared ones where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
-//! repository). Arguments after `--` set the page size and the number of rays: `cargo bench -p sunbake -- 1024 256`.
+//! repository). Arguments after `--` set the page size, the number of suns and, with `bisect`, the
+//! engine: `cargo bench -p sunbake -- 1024 256`, `cargo bench -p sunbake -- 1024 64 bisect`.
 
 use std::path::{Path, PathBuf};
 use sunbake::progress::Silent;
@@ -14,8 +15,10 @@ const SHARED: [&str; 3] =
 fn main() {
     let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
     let page_size = numbers.first().copied().unwrap_or(1024);
-    let rays = numbers.get(1).copied().unwrap_or(256);
-    println!("pages of {page_size}, rays:{rays}, {} thread(s)", rayon::current_num_threads());
+    let count = numbers.get(1).copied().unwrap_or(256);
+    let bisects = std::env::args().any(|a| a == "bisect");
+    let engine = if bisects { EngineChoice::Bisect(count) } else { EngineChoice::Rays(count) };
+    println!("pages of {page_size}, {engine}, {} thread(s)", rayon::current_num_threads());
     println!(
         "{:<20}{:>10}{:>10} |{:>8}{:>8}{:>8}{:>11}{:>8}{:>8} s |{:>11}{:>10}",
         "scene",
@@ -32,7 +35,7 @@ fn main() {
     );
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
     for file in std::iter::once(own).chain(shared_scenes()) {
-        row(&file, page_size as u32, rays);
+        row(&file, page_size as u32, engine);
     }
 }
 
@@ -44,7 +47,7 @@ fn shared_scenes() -> Vec<PathBuf> {
     present
 }
 
-fn row(file: &Path, page_size_texels: u32, rays: usize) {
+fn row(file: &Path, page_size_texels: u32, engine: EngineChoice) {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let target = std::env::temp_dir().join(format!("sunbake-bench-{}-{name}", std::process::id()));
     let day = DayRequest {
@@ -55,11 +58,7 @@ fn row(file: &Path, page_size_texels: u32, rays: usize) {
         north_deg: 0.0,
         window: None,
     };
-    let settings = BakeSettings {
-        page_size_texels,
-        engine: EngineChoice::Rays(rays),
-        ..BakeSettings::standard(SunRequest::Day(day))
-    };
+    let settings = BakeSettings { page_size_texels, engine, ..BakeSettings::standard(SunRequest::Day(day)) };
     match sunbake::bake(file, &target, true, &settings, &Silent) {
         Err(error) => println!("{name:<20} {error}"),
         Ok(report) => {

@@ -2,7 +2,9 @@
 
 use crate::atlas::Density;
 use crate::maps::Bits;
-use crate::sun::DayRequest;
+use crate::sun::{DayRequest, SunPath};
+use crate::trace::Tracer;
+use crate::visibility::{BisectEngine, Engine, ExactEngine, RayEngine};
 
 /// Everything that decides what a bake makes, and what it may cost.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +33,9 @@ pub struct BakeSettings {
     pub engine: EngineChoice,
     /// Whether to write, for each page, where storing lost minutes. Takes 24 bytes a texel of a page while it is baked.
     pub loss_map: bool,
+    /// How far off an edge may be, in seconds of the path's clock, for engines that search for edges
+    /// ([`EngineChoice::searches`]); 0.001 to 3600, usually 1. Halving it costs every edge one ray more.
+    pub edge_seconds: f64,
     /// Threads, 0 for one per core. The result does not depend on it.
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
@@ -56,26 +61,57 @@ pub enum SunRequest {
 /// How lit intervals are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EngineChoice {
+    /// In closed form: every edge to a microsecond or so, and nothing missed.
+    Exact,
     /// This many evenly spaced suns, 2 to 65536: edges are off by half a step at most, and what is thinner than a step
     /// may be missed. Time grows with the number.
     Rays(usize),
+    /// This many evenly spaced suns, 2 to 65536, and then every change between two of them halved until it is known to
+    /// [`BakeSettings::edge_seconds`]. What is shorter than a step may be missed. Time grows with the number, and with the
+    /// edges that a texel has.
+    Bisect(usize),
+}
+
+impl EngineChoice {
+    /// Whether it searches for edges, and so heeds [`BakeSettings::edge_seconds`].
+    pub fn searches(self) -> bool {
+        matches!(self, Self::Bisect(_))
+    }
+
+    /// The engine, for the lanes of a sun.
+    pub fn engine<'a>(self, tracer: &'a Tracer, lanes: &[SunPath], edge_seconds: f64) -> Box<dyn Engine + 'a> {
+        match self {
+            Self::Exact => Box::new(ExactEngine::new(tracer, lanes)),
+            Self::Rays(count) => Box::new(RayEngine::new(tracer, lanes, count)),
+            Self::Bisect(count) => Box::new(BisectEngine::new(tracer, lanes, count, edge_seconds)),
+        }
+    }
+}
+
+impl std::fmt::Display for EngineChoice {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Exact => write!(f, "exact"),
+            Self::Rays(count) => write!(f, "rays:{count}"),
+            Self::Bisect(count) => write!(f, "bisect:{count}"),
+        }
+    }
 }
 
 impl BakeSettings {
-    /// A look in seconds: one page of 512, 64 suns, 8 bits.
+    /// A look in seconds: one page of 512, 8 bits.
     pub fn draft(sun: SunRequest) -> Self {
         Self {
             density: Density::Pages(1),
             page_size_texels: 512,
             bits: Bits::Eight,
             layer_cap: 2,
-            engine: EngineChoice::Rays(64),
             max_memory_bytes: 4 << 30,
             ..Self::standard(sun)
         }
     }
 
-    /// Good for a game level: one page of 2048, 256 suns, 16 bits.
+    /// Good for a game level: one page of 2048, 16 bits.
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
@@ -86,21 +122,16 @@ impl BakeSettings {
             bits: Bits::Sixteen,
             layer_cap: 4,
             lane_count: 1,
-            engine: EngineChoice::Rays(256),
+            engine: EngineChoice::Exact,
             loss_map: false,
+            edge_seconds: 1.0,
             threads: 0,
             max_memory_bytes: 8 << 30,
         }
     }
 
-    /// To keep: one page of 4096, 1024 suns, 16 bits, as many layers as anything needs.
+    /// To keep: one page of 4096, 16 bits, as many layers as anything needs.
     pub fn last(sun: SunRequest) -> Self {
-        Self {
-            page_size_texels: 4096,
-            layer_cap: 8,
-            engine: EngineChoice::Rays(1024),
-            max_memory_bytes: 16 << 30,
-            ..Self::standard(sun)
-        }
+        Self { page_size_texels: 4096, layer_cap: 8, max_memory_bytes: 16 << 30, ..Self::standard(sun) }
     }
 }

@@ -1,5 +1,13 @@
 //! What the hard-case tests share: scenes by code, points on them, suns, and oracles that are not the code under test.
 
+mod agreement;
+pub mod engines;
+mod oracle;
+pub mod paths;
+
+pub use agreement::Agreement;
+pub use oracle::Oracle;
+
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -45,6 +53,11 @@ impl Traced {
         SurfacePoint { position_m: world - self.scene.centre_m, ..self.point(triangle, [0.25, 0.25]) }
     }
 
+    /// A point in the air with a plane of its own, given in world space; its rays start as those of a triangle do.
+    pub fn observer(&self, world: DVec3, normal: DVec3, triangle: usize) -> SurfacePoint {
+        SurfacePoint { normal, ..self.point_at(world, triangle) }
+    }
+
     /// When a point sees the sun, by `count` rays.
     pub fn lit_by_rays(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> Intervals {
         let engine = RayEngine::new(&self.tracer, std::slice::from_ref(path), count);
@@ -80,6 +93,12 @@ pub fn standing(direction: DVec3) -> SunPath {
 /// A path of one arc, of a light without width.
 pub fn path_of(arc: SunArc) -> SunPath {
     SunPath::new(vec![arc], 0.0, 720.0).expect("the arc is well formed")
+}
+
+/// How many random cases a test tries: as many as `SUNBAKE_CASES` says, or else these.
+pub fn cases(ordinarily: usize) -> usize {
+    let asked = std::env::var("SUNBAKE_CASES").ok();
+    asked.map_or(ordinarily, |text| text.parse().expect("SUNBAKE_CASES is a number"))
 }
 
 /// Where the shared scenes lie, if they are here: `SUNBAKE_SHARED`, or `shared` beside the repository.

@@ -13,10 +13,9 @@ use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan};
 use crate::progress::{Progress, Stage};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
-use crate::settings::{BakeSettings, EngineChoice, SunRequest};
+use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
-use crate::visibility::{Engine, RayEngine};
 use entries::{instance_entries, loss_warning, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
 use leave_out::{darkness_warning, leave_out};
@@ -175,11 +174,9 @@ fn bake_prepared(
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
-    let engine = path.map(|_| match settings.engine {
-        EngineChoice::Rays(count) => RayEngine::new(&tracer, &lane_paths, count),
-    });
+    let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let sun = engine.as_ref().map(|engine| Sun { engine: engine as &dyn Engine, lanes: &lanes, duration_min });
+    let sun = engine.as_deref().map(|engine| Sun { engine, lanes: &lanes, duration_min });
     let mut pages = PageBaker::new(scene, &geometry, atlas, settings, sun, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;

@@ -37,11 +37,11 @@ pub enum Command {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// A look in seconds: a page of 512, 64 suns, 8 bits.
+    /// A look in seconds: a page of 512, 8 bits.
     Draft,
-    /// For a game level: a page of 2048, 256 suns, 16 bits.
+    /// For a game level: a page of 2048, 16 bits.
     Standard,
-    /// To keep: a page of 4096, 1024 suns, 16 bits, up to 8 layers.
+    /// To keep: a page of 4096, 16 bits, up to 8 layers.
     Final,
 }
 
@@ -150,9 +150,19 @@ pub struct CostArgs {
     /// soften, in as many steps. Bytes grow with the number, and so does rays' time.
     #[arg(long, value_name = "1|3|5", value_parser = parse_lanes, default_value = "1")]
     pub lanes: usize,
-    /// How to find the times: rays:N asks N suns, 2 to 65536. [default: rays:64, 256 or 1024, by preset]
+    /// How to find the times: exact, rays:N or bisect:N, N from 2 to 65536. [default: exact]
+    ///
+    /// exact finds every edge in closed form and misses nothing; it is also the fastest. The others are there to compare:
+    /// rays:N asks N suns; edges are off by half a step at most, 1.8 minutes of a summer day at 256. bisect:N asks N suns
+    /// and then halves every change between two of them until it is known to --edge-seconds. Both may miss what is shorter
+    /// than a step. Time grows with N.
     #[arg(long, value_name = "ENGINE", value_parser = parse_engine)]
     pub engine: Option<EngineChoice>,
+    /// How far off an edge may be, in seconds of sun, 0.001 to 3600; for bisect:N. [default: 1]
+    ///
+    /// Halving it costs every edge one ray more. 16-bit times of a summer day are steps of 0.8 seconds.
+    #[arg(long, value_name = "S", value_parser = parse_edge_seconds)]
+    pub edge_seconds: Option<f64>,
     /// Threads; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
@@ -231,9 +241,22 @@ fn parse_density(text: &str) -> Result<f64, String> {
 }
 
 fn parse_engine(text: &str) -> Result<EngineChoice, String> {
-    let wrong = || format!("`{text}` is not an engine: give rays:N with N from 2 to 65536");
-    let count = text.strip_prefix("rays:").and_then(|n| n.parse().ok()).ok_or_else(wrong)?;
-    (2..=65_536).contains(&count).then_some(EngineChoice::Rays(count)).ok_or_else(wrong)
+    if text == "exact" {
+        return Ok(EngineChoice::Exact);
+    }
+    let wrong = || format!("`{text}` is not an engine: give exact, or rays:N or bisect:N with N from 2 to 65536");
+    let (name, count) = text.split_once(':').ok_or_else(wrong)?;
+    let count = count.parse().ok().filter(|n| (2..=65_536).contains(n)).ok_or_else(wrong)?;
+    match name {
+        "rays" => Ok(EngineChoice::Rays(count)),
+        "bisect" => Ok(EngineChoice::Bisect(count)),
+        _ => Err(wrong()),
+    }
+}
+
+fn parse_edge_seconds(text: &str) -> Result<f64, String> {
+    let valid = |seconds: &f64| (0.001..=3600.0).contains(seconds);
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a number of seconds from 0.001 to 3600"))
 }
 
 fn parse_bytes(text: &str) -> Result<u64, String> {
@@ -281,8 +304,24 @@ mod tests {
     #[test]
     fn engines_outside_their_range_are_refused() {
         assert_eq!(parse_engine("rays:256"), Ok(EngineChoice::Rays(256)));
-        for bad in ["rays", "rays:", "rays:0", "rays:1", "rays:65537", "rays:-3", "sun:7"] {
+        assert_eq!(parse_engine("bisect:64"), Ok(EngineChoice::Bisect(64)));
+        for bad in ["rays", "rays:", "rays:0", "rays:1", "rays:65537", "rays:-3", "bisect", "bisect:1", "sun:7"] {
             assert!(parse_engine(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn every_engine_reads_what_it_prints() {
+        for engine in [EngineChoice::Rays(7), EngineChoice::Bisect(65_536)] {
+            assert_eq!(parse_engine(&engine.to_string()), Ok(engine));
+        }
+    }
+
+    #[test]
+    fn edges_are_asked_for_in_seconds() {
+        assert_eq!(parse_edge_seconds("0.5"), Ok(0.5));
+        for bad in ["", "0", "-1", "3601", "nan", "inf", "1s"] {
+            assert!(parse_edge_seconds(bad).is_err(), "{bad}");
         }
     }
 }

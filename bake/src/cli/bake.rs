@@ -80,6 +80,13 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         Preset::Final => BakeSettings::last(sun),
     };
     let cost = &args.cost;
+    let engine = cost.engine.unwrap_or(preset.engine);
+    if cost.edge_seconds.is_some() && !engine.searches() {
+        return Err(Failure::usage(format!(
+            "--edge-seconds means nothing to --engine {engine}, whose edges lie between its suns: leave it out, or give \
+             --engine bisect:N"
+        )));
+    }
     Ok(BakeSettings {
         leave_out: args.leave_out.clone(),
         density: cost.texels_per_metre.map_or(preset.density, Density::TexelsPerMetre),
@@ -88,8 +95,9 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
-        engine: cost.engine.unwrap_or(preset.engine),
         loss_map: args.loss_map,
+        engine,
+        edge_seconds: cost.edge_seconds.unwrap_or(preset.edge_seconds),
         threads: cost.threads,
         max_memory_bytes: cost.max_memory.unwrap_or(preset.max_memory_bytes),
         ..preset

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use sunbake::Prepared;
 use sunbake::atlas::Density;
 use sunbake::disk::manifest::{AtlasEntry, EffectEntry, LossEntry, Manifest, PathEntry, StageSeconds};
-use sunbake::settings::{BakeSettings, EngineChoice};
+use sunbake::settings::BakeSettings;
 
 /// Lines of a label and a value, in two columns.
 #[derive(Default)]
@@ -54,11 +54,12 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
         Density::TexelsPerMetre(d) => format!("{d} texels/m, on pages of at most {edge} x {edge}"),
     };
     lines.line("atlas", pages);
-    let EngineChoice::Rays(rays) = settings.engine;
     let layers = count(settings.layer_cap as u64, "layer");
     let lanes = in_lanes(prepared.plan.lane_count(settings.lane_count));
     lines.line("times", format!("{} bits, at most {layers}{lanes}", settings.bits.count()));
-    lines.line("engine", format!("rays:{rays}"));
+    let edges = || format!(", edges to {} s", settings.edge_seconds);
+    let edges = if settings.engine.searches() { edges() } else { String::new() };
+    lines.line("engine", format!("{}{edges}", settings.engine));
     lines.0
 }
 

@@ -128,6 +128,11 @@ impl Tracer {
         self.run_up
     }
 
+    /// How far before its origin a shadow ray starts, along its direction: half of the least lift of any instance.
+    pub fn run_up_m(&self) -> f64 {
+        self.run_up / self.tracer_from_bake
+    }
+
     /// Whether anything solid lies along the direction.
     pub fn is_occluded(&self, origin_m: DVec3, direction: &Direction) -> bool {
         self.occluder(origin_m, direction).is_some()

@@ -5,10 +5,13 @@
 //! side the sun is on, so one list serves both of its faces: at any moment the sun stands before just one of them, and
 //! the run time knows which.
 
+mod bisect;
 mod exact;
 pub mod intervals;
+mod probe;
 mod rays;
 
+pub use bisect::BisectEngine;
 pub use exact::ExactEngine;
 pub use intervals::{IntervalTable, Intervals};
 pub use rays::RayEngine;
@@ -17,7 +20,7 @@ use crate::atlas::SurfacePoint;
 use rayon::prelude::*;
 
 /// A way to find lit intervals, along one path or along several side by side (the lanes of a disc). Implementations:
-/// [`RayEngine`].
+/// [`ExactEngine`], [`RayEngine`] and [`BisectEngine`].
 pub trait Engine: Sync {
     /// Its name with its parameters, as on the command line.
     fn name(&self) -> String;

@@ -4,14 +4,17 @@
 //! of each; the step is lit or dark as its ray is, so edges land half-way between rays. What lies between two rays and
 //! touches neither is missed: errors are up to 1/(2N) of the path an edge, and features thinner than 1/N may vanish.
 //!
-//! Suns below the horizon or behind the surface cost no ray. Each sun's last occluder is tried before the hierarchy is
-//! walked, since what shades a texel mostly shades its neighbour.
+//! Suns below the horizon or behind the surface cost no ray. Two guesses are tried before the hierarchy is walked: what
+//! last hid the same sun, since what shades a texel mostly shades its neighbour, and what hid the sun before this one,
+//! since what shades a texel mostly does so for a while. On pages of 256 with 256 suns, the second makes scenes full of
+//! shade faster (littlest_tokyo by 3.5 times, two_cylinder_engine by 2.1) and leaves those with open ground as they were
+//! (gas_station, truck_town). Asking in the other order makes no difference that can be told.
 
+use super::probe::{Probe, side_towards};
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::{Direction, Occluder, Tracer};
-use glam::DVec3;
 
 /// N evenly spaced suns.
 pub struct RayEngine<'a> {
@@ -55,10 +58,9 @@ struct RaySession<'a> {
 impl Session for RaySession<'_> {
     fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
         for point in points {
-            let sides = [point.normal, -point.normal];
-            let origins = sides.map(|side| self.engine.tracer.lift(point.position_m, side, point.triangle));
+            let probe = Probe::new(self.engine.tracer, point);
             for lane in 0..self.engine.suns.len() {
-                answers.push(&self.lit_along(lane, point, &origins));
+                answers.push(&self.lit_along(lane, point, &probe));
             }
         }
     }
@@ -69,12 +71,13 @@ impl Session for RaySession<'_> {
 }
 
 impl RaySession<'_> {
-    fn lit_along(&mut self, lane: usize, point: &SurfacePoint, origins: &[DVec3; 2]) -> Intervals {
+    fn lit_along(&mut self, lane: usize, point: &SurfacePoint, probe: &Probe) -> Intervals {
         let count = self.engine.suns[lane].len();
         let mut lit = Vec::new();
         let mut start = None;
+        let mut before = None;
         for step in 0..count {
-            match (self.is_lit(lane, point, origins, step), start) {
+            match (self.is_lit(lane, point, probe, step, &mut before), start) {
                 (true, None) => start = Some(step),
                 (false, Some(first)) => {
                     lit.push([first as f64 / count as f64, step as f64 / count as f64]);
@@ -87,25 +90,22 @@ impl RaySession<'_> {
         Intervals::from_unsorted(lit)
     }
 
-    fn is_lit(&mut self, lane: usize, point: &SurfacePoint, origins: &[DVec3; 2], step: usize) -> bool {
+    /// `before` is what hid the sun before this one, and then this one.
+    fn is_lit(
+        &mut self,
+        lane: usize,
+        point: &SurfacePoint,
+        probe: &Probe,
+        step: usize,
+        before: &mut Option<Occluder>,
+    ) -> bool {
         let Some(sun) = &self.engine.suns[lane][step] else { return false };
-        let above = point.normal.dot(sun.unit());
-        let origin = match above {
-            above if above > 0.0 => origins[0],
-            above if above < 0.0 && point.is_double_sided => origins[1],
-            _ => return false,
-        };
+        let Some(side) = side_towards(point, sun.unit()) else { return false };
         self.work.rays += 1;
-        let tracer = self.engine.tracer;
-        if self.last_occluder[lane][step].is_some_and(|last| tracer.is_occluded_by(last, origin, sun)) {
-            return false;
-        }
-        match tracer.occluder(origin, sun) {
-            None => true,
-            occluder => {
-                self.last_occluder[lane][step] = occluder;
-                false
-            }
-        }
+        let last = &mut self.last_occluder[lane][step];
+        let occluder = probe.occluder(side, sun, [*last, *before]);
+        *before = occluder;
+        *last = occluder.or(*last);
+        occluder.is_none()
     }
 }

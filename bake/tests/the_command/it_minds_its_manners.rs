@@ -70,6 +70,15 @@ fn only_intervals_is_what_it_does_anyway() {
 }
 
 #[test]
+fn the_engine_asked_for_is_the_one_that_bakes() {
+    let desk = Desk::new();
+    let asked = ["bake", "floor.glb", "-o", "out/bisected", "--preset=draft", "--size=64", "--json"];
+    let run = desk.run(&[&asked[..], &["--engine=bisect:8", "--edge-seconds=2"]].concat()).ok();
+    assert_eq!(run.json()["stats"]["engine"], "bisect:8 --edge-seconds 2");
+    assert_eq!(desk.bake(&["--json"]).ok().json()["stats"]["engine"], "rays:16");
+}
+
+#[test]
 fn the_same_seed_draws_the_same_texels() {
     let desk = Desk::new();
     desk.bake(&[]).ok();

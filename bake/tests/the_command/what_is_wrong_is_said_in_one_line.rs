@@ -123,7 +123,7 @@ fn files_that_are_not_there_are_named() {
 
 #[test]
 fn options_that_make_no_sense_are_refused() {
-    let cases: [(&[&str], i32, &[&str]); 17] = [
+    let cases: [(&[&str], i32, &[&str]); 20] = [
         (&["--place", "91,0"], 1, &["latitude 91", "-90..=90"]),
         (&["--place", "0,181"], 1, &["longitude 181", "-180..=180"]),
         (&["--place", "nan,0"], 1, &["not a place", "48.2,16.4"]),
@@ -137,6 +137,9 @@ fn options_that_make_no_sense_are_refused() {
         (&["--only", "ao"], 1, &["not supported yet", "--only intervals"]),
         (&["--bits", "9"], 1, &["8 or 16"]),
         (&["--engine", "rays:1"], 1, &["2 to 65536"]),
+        (&["--engine", "bisect:1"], 1, &["2 to 65536"]),
+        (&["--edge-seconds", "2"], 1, &["--edge-seconds", "exact", "leave it out", "bisect:N"]),
+        (&["--engine", "bisect:9", "--edge-seconds", "0"], 1, &["0.001 to 3600"]),
         (&["--padding", "16", "--size", "64"], 1, &["padding is 16", "eighth of the page"]),
         (&["--size", "16384"], 3, &["16384 x 16384", "smaller --size", "larger --max-memory"]),
         (&["--texels-per-metre", "1e7"], 3, &["1e7", "smaller --texels-per-metre", "larger --max-memory"]),

@@ -165,11 +165,15 @@ mod tests {
     #[test]
     fn diamond_angles_grow_with_the_angle_and_turn_back_into_it() {
         let mut before = -2.0;
-        for step in -1000..=1000 {
+        for step in -1000i32..=1000 {
             let angle = f64::from(step) / 1000.0 * PI;
             let u = diamond(angle.cos(), angle.sin());
             assert!(u >= before, "{u} after {before}");
-            assert!((angle_rad(u) - angle).abs() < 1e-15 * 8.0 || step.abs() == 1000, "{angle} came back as {}", angle_rad(u));
+            assert!(
+                (angle_rad(u) - angle).abs() < 1e-15 * 8.0 || step.abs() == 1000,
+                "{angle} came back as {}",
+                angle_rad(u)
+            );
             before = u;
         }
     }

@@ -146,14 +146,8 @@ fn seen<S: Simd>(simd: S, sides: [[f32x8<S>; 2]; 3], wanted: &Wanted, count: usi
 
     let not_below_left = !below & left;
     let not_above_left = !above & left;
-    let first = [
-        (above | not_below_left).select(x1, x0),
-        above.select(left.select(y1, y0), right.select(y0, y1)),
-    ];
-    let last = [
-        (below | not_above_left).select(x1, x0),
-        below.select(left.select(y0, y1), right.select(y1, y0)),
-    ];
+    let first = [(above | not_below_left).select(x1, x0), above.select(left.select(y1, y0), right.select(y0, y1))];
+    let last = [(below | not_above_left).select(x1, x0), below.select(left.select(y0, y1), right.select(y1, y0))];
     let around = !(left | right | below | above);
     let low = around.select(f32x8::splat(simd, -3.0), diamond(simd, first));
     let high = around.select(f32x8::splat(simd, 3.0), diamond(simd, last));

@@ -80,14 +80,7 @@ impl<'a> Coverer<'a> {
     }
 
     /// Closes what some triangles hide, and notes which did.
-    fn close<S: Simd>(
-        &mut self,
-        simd: S,
-        corners: &Corners,
-        ids: &[u32; WIDTH],
-        count: usize,
-        query: &mut Query,
-    ) {
+    fn close<S: Simd>(&mut self, simd: S, corners: &Corners, ids: &[u32; WIDTH], count: usize, query: &mut Query) {
         let lanes = self.frame.lanes.len();
         let mut asked = [Asked { cos: 1.0, sin: 0.0, hull: [0.0; 2] }; MOST_LANES];
         for ((asked, declination), gaps) in asked.iter_mut().zip(&self.frame.lanes).zip(&query.gaps) {

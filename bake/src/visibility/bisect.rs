@@ -1,0 +1,219 @@
+//! N rays a point, and then more where the answer changed: edges as sharp as asked for, at a logarithm's cost.
+//!
+//! Theory: between a sun that is seen and one that is not lies an edge, and a ray half-way says in which half. So an edge
+//! is known to `1/2^k` of a coarse step for k rays, where evenly spaced rays would take `2^k` times as many suns.
+//!
+//! Practice: horizon and surface cut the path in closed form, so edges there are exact. Each spell between has its own
+//! suns: its two ends, and those of N suns that fall inside it (the first of the N at t = 0, the last at t = 1). Every
+//! change from one sun to the next is halved until both sides are `2 * edge_seconds` apart, and the edge is put in the
+//! middle. While halving, what hid the dark side is tried before the hierarchy is walked: the edge is mostly its own.
+//!
+//! What is missed: whatever begins and ends between two neighbouring suns, so any spell of light or shade shorter than
+//! `1/(N - 1)` of the path may be; and of three changes between two suns one is found. What is found is off by
+//! `edge_seconds` at most.
+
+use super::probe::{Probe, Side};
+use super::{Engine, IntervalTable, Intervals, Session, Work};
+use crate::atlas::SurfacePoint;
+use crate::sun::SunPath;
+use crate::trace::{Direction, Occluder, Tracer};
+use glam::DVec3;
+
+/// The finest edge in `t`: steps of an `f64` are ten thousand times smaller, so halving always ends.
+const FINEST_T: f64 = 1e-12;
+
+/// N evenly spaced suns, and bisection between those that differ.
+pub struct BisectEngine<'a> {
+    tracer: &'a Tracer,
+    count: usize,
+    edge_seconds: f64,
+    lanes: Vec<Lane>,
+}
+
+/// A path, and what does not depend on the point.
+struct Lane {
+    path: SunPath,
+    above_horizon: Intervals,
+    /// The coarse suns, evenly spaced from t = 0 to t = 1.
+    suns: Vec<Direction>,
+    /// How far apart, in `t`, both sides of an edge may stay.
+    apart_t: f64,
+}
+
+impl<'a> BisectEngine<'a> {
+    /// Places `count` suns (2 at least) along each lane's path. Edges found are off by at most `edge_seconds` of the
+    /// path's clock; halving it costs every edge one ray more.
+    pub fn new(tracer: &'a Tracer, lanes: &[SunPath], count: usize, edge_seconds: f64) -> Self {
+        let count = count.max(2);
+        let lanes = lanes.iter().map(|path| Lane::new(path, count, edge_seconds)).collect();
+        Self { tracer, count, edge_seconds, lanes }
+    }
+}
+
+impl Lane {
+    fn new(path: &SunPath, count: usize, edge_seconds: f64) -> Self {
+        let sun = |step| Direction::new(path.direction(step as f64 / (count - 1) as f64));
+        Self {
+            above_horizon: path.above_horizon(DVec3::Y),
+            suns: (0..count).map(sun).collect(),
+            apart_t: (2.0 * edge_seconds / (60.0 * path.duration_min)).max(FINEST_T),
+            path: path.clone(),
+        }
+    }
+
+    /// When the sun is up and counts, and on which side of the point it then is.
+    fn spells(&self, point: &SurfacePoint) -> Vec<([f64; 2], Side)> {
+        let before = self.path.above_plane(point.normal);
+        let of_side = |when: &Intervals, side| {
+            let up = when.intersection(&self.above_horizon);
+            up.as_slice().iter().map(|&spell| (spell, side)).collect::<Vec<_>>()
+        };
+        let mut spells = of_side(&before, Side::Front);
+        if point.is_double_sided {
+            spells.extend(of_side(&gaps(&before), Side::Back));
+        }
+        spells
+    }
+
+    /// Towards the sun as `t` is reached: where arcs do not quite meet, the end of the one before.
+    fn direction_until(&self, t: f64) -> DVec3 {
+        let arcs = self.path.arcs();
+        let arc = arcs.iter().find(|arc| t <= arc.t[1]).unwrap_or(&arcs[arcs.len() - 1]);
+        arc.direction_at_hour_angle(arc.hour_angle_at(t))
+    }
+
+    fn step_t(&self) -> f64 {
+        1.0 / (self.suns.len() - 1) as f64
+    }
+}
+
+/// What of the path some intervals leave free.
+fn gaps(intervals: &Intervals) -> Intervals {
+    let ends = intervals.as_slice();
+    let starts = std::iter::once(0.0).chain(ends.iter().map(|i| i[1]));
+    Intervals::from_unsorted(starts.zip(ends.iter().map(|i| i[0]).chain([1.0])).map(|(a, b)| [a, b]).collect())
+}
+
+impl Engine for BisectEngine<'_> {
+    fn name(&self) -> String {
+        format!("bisect:{} --edge-seconds {}", self.count, self.edge_seconds)
+    }
+
+    fn lane_count(&self) -> usize {
+        self.lanes.len()
+    }
+
+    fn session(&self) -> Box<dyn Session + '_> {
+        let last_occluder = self.lanes.iter().map(|lane| vec![None; lane.suns.len()]).collect();
+        Box::new(BisectSession { engine: self, last_occluder, rays: 0 })
+    }
+}
+
+struct BisectSession<'a> {
+    engine: &'a BisectEngine<'a>,
+    /// For each lane and coarse sun.
+    last_occluder: Vec<Vec<Option<Occluder>>>,
+    rays: u64,
+}
+
+impl Session for BisectSession<'_> {
+    fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
+        let engine = self.engine;
+        for point in points {
+            let probe = Probe::new(engine.tracer, point);
+            for (lane, last_occluder) in engine.lanes.iter().zip(&mut self.last_occluder) {
+                let mut search = Search { lane, probe: &probe, last_occluder, rays: &mut self.rays, lit: Vec::new() };
+                lane.spells(point).into_iter().for_each(|(spell, side)| search.spell(spell, side));
+                answers.push(&Intervals::from_unsorted(search.lit));
+            }
+        }
+    }
+
+    fn work(&self) -> Work {
+        Work { rays: self.rays, ..Work::default() }
+    }
+}
+
+/// One point along one lane.
+struct Search<'a> {
+    lane: &'a Lane,
+    probe: &'a Probe<'a>,
+    last_occluder: &'a mut [Option<Occluder>],
+    rays: &'a mut u64,
+    lit: Vec<[f64; 2]>,
+}
+
+/// What is known of a moment: nothing hides the sun, or this does.
+#[derive(Clone, Copy)]
+struct Known {
+    t: f64,
+    occluder: Option<Occluder>,
+}
+
+impl Known {
+    fn is_lit(&self) -> bool {
+        self.occluder.is_none()
+    }
+}
+
+impl Search<'_> {
+    /// Finds the light within a spell.
+    fn spell(&mut self, [first_t, last_t]: [f64; 2], side: Side) {
+        let step_t = self.lane.step_t();
+        let inside = (first_t / step_t) as usize + 1..(last_t / step_t).ceil() as usize;
+        let first_sun = self.lane.path.direction(first_t);
+        let mut before = self.end(first_t, first_sun, side, None);
+        let mut lit_since = before.is_lit().then_some(first_t);
+        for step in inside {
+            let now = self.coarse(step, side, before.occluder);
+            lit_since = self.advance(before, now, lit_since, side);
+            before = now;
+        }
+        let end = self.end(last_t, self.lane.direction_until(last_t), side, before.occluder);
+        let lit_since = self.advance(before, end, lit_since, side);
+        self.lit.extend(lit_since.map(|since| [since, last_t]));
+    }
+
+    /// From one moment to the next: keeps the light that ended between them, and tells since when there is light.
+    fn advance(&mut self, before: Known, now: Known, lit_since: Option<f64>, side: Side) -> Option<f64> {
+        if before.is_lit() == now.is_lit() {
+            return lit_since;
+        }
+        let edge_t = self.edge_t(before, now, side);
+        self.lit.extend(lit_since.map(|since| [since, edge_t]));
+        now.is_lit().then_some(edge_t)
+    }
+
+    /// The edge between a moment that is lit and one that is not.
+    fn edge_t(&mut self, mut low: Known, mut high: Known, side: Side) -> f64 {
+        while high.t - low.t > self.lane.apart_t {
+            let t = 0.5 * (low.t + high.t);
+            let sun = Direction::new(self.lane.path.direction(t));
+            let middle = self.ask(t, side, &sun, [low.occluder.or(high.occluder), None]);
+            let end = if middle.is_lit() == low.is_lit() { &mut low } else { &mut high };
+            *end = middle;
+        }
+        0.5 * (low.t + high.t)
+    }
+
+    fn coarse(&mut self, step: usize, side: Side, before: Option<Occluder>) -> Known {
+        let lane = self.lane;
+        let known = self.ask(step as f64 * lane.step_t(), side, &lane.suns[step], [self.last_occluder[step], before]);
+        if !known.is_lit() {
+            self.last_occluder[step] = known.occluder;
+        }
+        known
+    }
+
+    /// The end of a spell. It has no memory of its own, and takes that of the coarse sun next to it.
+    fn end(&mut self, t: f64, sun: DVec3, side: Side, before: Option<Occluder>) -> Known {
+        let sun = Direction::new(sun);
+        let beside = (t / self.lane.step_t()).round() as usize;
+        self.ask(t, side, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
+    }
+
+    fn ask(&mut self, t: f64, side: Side, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Known {
+        *self.rays += 1;
+        Known { t, occluder: self.probe.occluder(side, sun, guesses) }
+    }
+}

@@ -1,0 +1,127 @@
+//! Every engine with what it claims, and the check that it keeps its word.
+
+use crate::{Agreement, Oracle, Traced};
+use sunbake::atlas::SurfacePoint;
+use sunbake::sun::SunPath;
+use sunbake::trace::Tracer;
+use sunbake::visibility::{BisectEngine, Engine, ExactEngine, Intervals, RayEngine, lit_at};
+
+/// An engine and its claims.
+pub struct Candidate {
+    /// Makes it.
+    pub make: for<'a> fn(&'a Tracer, &[SunPath]) -> Box<dyn Engine + 'a>,
+    /// How far from an edge of brute force it may be wrong, in `t`; a spell of twice that cannot be missed.
+    pub blind_t: f64,
+    /// How far off an edge that it finds may be, in `t`.
+    pub edge_t: fn(&SunPath) -> f64,
+    /// Suns of brute force that are just its own, where there are such: it cannot disagree about any.
+    pub own_suns: Option<usize>,
+}
+
+/// Evenly spaced rays: wrong up to half a step from an edge, and never further.
+pub const RAYS: Candidate = Candidate {
+    make: |tracer, lanes| Box::new(RayEngine::new(tracer, lanes, 256)),
+    blind_t: 0.5 / 256.0,
+    edge_t: |_| 0.5 / 256.0,
+    own_suns: Some(256),
+};
+
+/// Bisection: as blind as its coarse suns are far apart, but what it finds it finds to a second. A whole step blind, not
+/// half: it looks at the very end of a spell, where the sun may be seen for less time than brute force knows, and then
+/// takes what is up to a step beside it for the same.
+pub const BISECT: Candidate = Candidate {
+    make: |tracer, lanes| Box::new(BisectEngine::new(tracer, lanes, 64, 1.0)),
+    blind_t: 1.0 / 63.0,
+    edge_t: |path| seconds_t(path, 1.0),
+    own_suns: None,
+};
+
+/// The engine that is to find everything.
+pub const EXACT: Candidate = Candidate {
+    make: |tracer, lanes| Box::new(ExactEngine::new(tracer, lanes)),
+    blind_t: 0.0,
+    edge_t: |_| 1e-7,
+    own_suns: None,
+};
+
+/// Whether it misses nothing at all, however short.
+pub const FINDS_ALL: bool = EXACT.blind_t == 0.0;
+
+/// All of them.
+pub const ALL: [Candidate; 3] = [RAYS, BISECT, EXACT];
+
+/// Suns of brute force in cases made by code.
+pub const SUNS: usize = 4096;
+/// What looks wrong is looked at again with so many times more suns: a spell between two suns may be there. (One that is
+/// shorter still and yet meets a ray is rare: one in 20,000 random cases, with [`RAYS`], which have suns of their own.)
+const CLOSER: usize = 512;
+
+/// Seconds of a path's clock, in `t`.
+pub fn seconds_t(path: &SunPath, seconds: f64) -> f64 {
+    seconds / (60.0 * path.duration_min)
+}
+
+impl Candidate {
+    /// When a point sees the sun.
+    pub fn lit(&self, here: &Traced, path: &SunPath, point: &SurfacePoint) -> Intervals {
+        lit_at((self.make)(&here.tracer, std::slice::from_ref(path)).as_ref(), point).swap_remove(0)
+    }
+
+    /// What is wrong with what it finds for a point, if anything is.
+    pub fn complaint(&self, here: &Traced, path: &SunPath, point: &SurfacePoint, truth: &[bool]) -> Option<String> {
+        let found = self.lit(here, path, point);
+        if self.keeps_its_word(path, &found, truth) {
+            return None;
+        }
+        let closer = Oracle::new(here, path, self.own_suns.unwrap_or(CLOSER * truth.len())).lit(point);
+        let name = (self.make)(&here.tracer, &[]).name();
+        let agreement = Agreement::of(&found, &closer);
+        let keeps = match self.own_suns {
+            Some(_) => agreement.beside_an_edge + agreement.elsewhere == 0,
+            None => self.keeps_its_word(path, &found, &closer),
+        };
+        (!keeps).then(|| format!("{name}: {agreement:?}\nfound {found:?}\nof {point:?}\nalong {path:?}"))
+    }
+
+    fn keeps_its_word(&self, path: &SunPath, found: &Intervals, truth: &[bool]) -> bool {
+        // A spell so short that its ends may be in either order may be none.
+        let agreement = Agreement::of(&lasting(found, 1.999 * (self.edge_t)(path)), truth);
+        // An edge of brute force lies anywhere between two of its suns.
+        let unsure_t = 0.5001 / truth.len() as f64;
+        agreement.furthest_t <= self.blind_t + unsure_t && agreement.edge_error_t <= (self.edge_t)(path) + unsure_t
+    }
+}
+
+/// Intervals without spells of light or shade under a length.
+fn lasting(found: &Intervals, shortest_t: f64) -> Intervals {
+    let light = found.as_slice().iter().copied().filter(|[start, end]| end - start >= shortest_t);
+    let mut joined: Vec<[f64; 2]> = Vec::new();
+    for [start, end] in light {
+        match joined.last_mut() {
+            Some(last) if start - last[1] < shortest_t => last[1] = end,
+            _ => joined.push([start, end]),
+        }
+    }
+    Intervals::from_unsorted(joined)
+}
+
+/// Every engine must keep its word about these points.
+#[track_caller]
+pub fn all_must_agree(case: &str, here: &Traced, path: &SunPath, points: &[SurfacePoint]) {
+    let oracle = Oracle::new(here, path, SUNS);
+    for (point, truth) in points.iter().zip(oracle.lit_all(points)) {
+        let complaints: Vec<String> =
+            ALL.iter().filter_map(|engine| engine.complaint(here, path, point, &truth)).collect();
+        assert!(complaints.is_empty(), "{case}: {}", complaints.join("\n"));
+    }
+}
+
+/// Intervals must be those expected: each found is one of them, each that the engine cannot miss is found.
+#[track_caller]
+pub fn must_be(case: &str, found: &Intervals, expected: &Intervals, off_t: f64, shortest_t: f64) {
+    let is_near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() <= off_t && (a[1] - b[1]).abs() <= off_t;
+    let is_in = |a: &[f64; 2], list: &Intervals| list.as_slice().iter().any(|b| is_near(a, b));
+    let invented = found.as_slice().iter().find(|piece| !is_in(piece, expected));
+    let lacking = expected.as_slice().iter().find(|piece| piece[1] - piece[0] > shortest_t && !is_in(piece, found));
+    assert_eq!((invented, lacking), (None, None), "{case}: found {found:?}, not {expected:?}");
+}

@@ -1,0 +1,119 @@
+//! B13 to B15 as far as finding times goes: cut-out leaves, many intervals, the path's ends.
+
+use glam::{DMat4, DVec3, Vec2, Vec3};
+use sunbake::scene::{Mesh, TextureRef, Wrap};
+use sunbake::sun::SunArc;
+use sunbake::testing::{SceneBuilder, block, cut, floor};
+use sunbake::visibility::{BisectEngine, Intervals};
+use sunbake_tests::engines::{ALL, BISECT, Candidate, EXACT, RAYS, SUNS, all_must_agree};
+use sunbake_tests::paths::{Random, day_at, keyed};
+use sunbake_tests::{Oracle, Traced, over_the_top, path_of};
+
+const FLOOR: usize = 0;
+
+fn a_floor() -> Vec<[Vec3; 3]> {
+    floor(Vec2::splat(-10.0), Vec2::splat(10.0), 0.0)
+}
+
+/// A leaf of 8 by 8 texels, solid or hole at random, level, two metres wide, tiled a little, a metre above the floor.
+fn under_a_leaf(seed: u64, wrap: Wrap) -> Traced {
+    let mut random = Random::new(seed);
+    let texels = (0..64).map(|_| [90, 160, 60, if random.index(2) == 0 { 0 } else { 255 }]).collect();
+    let (builder, image) = SceneBuilder::new().soup(&a_floor()).image(8, 8, texels);
+    let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0f32]];
+    let leaf = Mesh {
+        positions: corners.iter().map(|[x, z]| Vec3::new(*x, 1.0, *z)).collect(),
+        texcoords: [Some(corners.iter().map(|[x, z]| Vec2::new(0.7 * x, 0.6 * z + 0.1)).collect()), None],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        ..Mesh::default()
+    };
+    let texture =
+        TextureRef { image, texcoord: 0, image_from_texcoord: glam::Mat3::IDENTITY, wrap: [wrap, Wrap::Repeat] };
+    Traced::new(builder.mesh_of(leaf, cut(texture), &[DMat4::IDENTITY]).build())
+}
+
+/// B13: edges lie where the mask's texels end.
+#[test]
+fn a_leaf_casts_its_cut_out() {
+    let mut edges = 0;
+    for (seed, wrap) in [(1, Wrap::Repeat), (2, Wrap::Clamp), (3, Wrap::Mirror)] {
+        let here = under_a_leaf(seed, wrap);
+        let mut random = Random::new(seed);
+        let mut points: Vec<_> = (0..30)
+            .map(|_| here.point_at(DVec3::new(random.range(-1.5, 1.5), 0.0, random.range(-1.5, 1.5)), FLOOR))
+            .collect();
+        // Points of the leaf itself, which is seen from both sides.
+        points
+            .extend((0..10).map(|_| here.point(2 + random.index(2), [random.range(0.0, 0.5), random.range(0.0, 0.5)])));
+        for path in [over_the_top(DVec3::X), day_at(10.0, "2026-03-20"), keyed()] {
+            all_must_agree("a leaf", &here, &path, &points);
+            edges += points.iter().map(|p| EXACT.lit(&here, &path, p).as_slice().len()).sum::<usize>();
+        }
+    }
+    assert!(edges > 700, "the leaf has hardly any holes: {edges}");
+}
+
+/// B14: a fence of 50 pales between the point and the sun.
+#[test]
+fn every_gap_of_a_fence_is_found() {
+    let pales: Vec<[Vec3; 3]> = (0..50)
+        .flat_map(|i| {
+            let x = (i as f32 - 24.5) * 0.1;
+            block(Vec3::new(x - 0.025, 0.0, 2.0), Vec3::new(x + 0.025, 9.0, 2.001))
+        })
+        .collect();
+    let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&pales).build());
+    let point = here.point_at(DVec3::ZERO, FLOOR);
+    let path = path_of(SunArc {
+        axis: -DVec3::Y,
+        zero: DVec3::Z,
+        declination_rad: -0.5,
+        hour_angle_rad: [-1.0, 1.0],
+        t: [0.0, 1.0],
+    });
+    all_must_agree("a fence", &here, &path, &[point]);
+    // 49 gaps, and what is left and right of the fence.
+    assert_eq!(EXACT.lit(&here, &path, &point).as_slice().len(), 51);
+    assert_eq!(RAYS.lit(&here, &path, &point).as_slice().len(), 51);
+}
+
+/// B15: light all day, never, from the first moment and up to the last.
+#[test]
+fn the_paths_ends_are_exact() {
+    let wall = |x: f32| block(Vec3::new(x - 0.5, 0.0, -9.0), Vec3::new(x + 0.5, 3.0, 9.0));
+    let path = over_the_top(DVec3::X);
+    let lit = |triangles: &[[Vec3; 3]]| {
+        let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(triangles).build());
+        ALL.map(|engine| engine.lit(&here, &path, &here.point_at(DVec3::ZERO, FLOOR)))
+    };
+    assert_eq!(lit(&[]), [(); 3].map(|()| Intervals::always()));
+    assert_eq!(
+        lit(&block(Vec3::new(-1.0, -1.0, -1.0), Vec3::new(1.0, 1.0, 1.0))),
+        [(); 3].map(|()| Intervals::never())
+    );
+    for found in lit(&wall(4.0)) {
+        let [[start, end]] = *found.as_slice() else { panic!("{found:?}") };
+        assert!(start > 0.1 && end == 1.0, "{found:?}");
+    }
+    for found in lit(&wall(-4.0)) {
+        let [[start, end]] = *found.as_slice() else { panic!("{found:?}") };
+        assert!(start == 0.0 && end < 0.9, "{found:?}");
+    }
+}
+
+/// The checks above can fail: they catch coarse bisection that claims to be fine, and rays that claim to bisect.
+#[test]
+fn an_engine_that_claims_too_much_is_caught() {
+    let here = under_a_leaf(4, Wrap::Repeat);
+    let point = here.point_at(DVec3::new(0.3, 0.0, 0.2), FLOOR);
+    let path = over_the_top(DVec3::X);
+    let truth = Oracle::new(&here, &path, SUNS).lit(&point);
+    let coarse = Candidate { make: |tracer, lanes| Box::new(BisectEngine::new(tracer, lanes, 64, 60.0)), ..BISECT };
+    let boasting = [coarse, Candidate { make: RAYS.make, ..BISECT }, Candidate { make: RAYS.make, ..EXACT }];
+    for (index, engine) in boasting.iter().enumerate() {
+        assert!(engine.complaint(&here, &path, &point, &truth).is_some(), "{index}");
+    }
+    for honest in ALL {
+        assert_eq!(honest.complaint(&here, &path, &point, &truth), None);
+    }
+}
