@@ -40,7 +40,7 @@ pub const BISECT: Candidate = Candidate {
 pub const EXACT: Candidate = Candidate {
     make: |tracer, lanes| Box::new(ExactEngine::new(tracer, lanes)),
     blind_t: 0.0,
-    edge_t: |_| 1e-7,
+    edge_t: |_| 1e-9,
     own_suns: None,
 };
 

@@ -80,7 +80,8 @@ fn a_hole_lights_just_while_the_sun_is_in_it() {
         let mut triangles = sphere(&mut random);
         let hole = triangles.swap_remove(random.index(triangles.len())).map(|v| v.as_dvec3());
         let here = above_a_pedestal(&triangles);
-        let outline = hole.map(|corner| corner - here.scene.centre_m);
+        // As the scene holds it: rounded in bake space.
+        let outline = hole.map(|corner| (corner - here.scene.centre_m).as_vec3().as_dvec3());
         for _ in 0..5 {
             let point = here.observer(random.cube() * 0.5, DVec3::Y, PEDESTAL);
             let from = origin(&here, &point);
