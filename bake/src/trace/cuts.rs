@@ -19,6 +19,8 @@ struct CutTriangle {
     /// Vertex alpha times the material's factor.
     alphas: [f32; 3],
     cutoff: f32,
+    /// Whether the vertices have no alpha of their own.
+    is_plain: bool,
     /// Index in [`Cuts::masks`], if the material has a texture.
     mask: Option<u32>,
 }
@@ -28,8 +30,9 @@ struct Mask {
     size: [u32; 2],
     wrap: [Wrap; 2],
     alpha: Vec<u8>,
-    /// Least and greatest alpha of squares of 2, 4, 8, ... texels: squares in a row, then the squares row by row.
-    ranges: Vec<(usize, Vec<[u8; 2]>)>,
+    /// For each texel of a material without corner alphas, whether it is solid ([`SOLID`]), and how many texels the image
+    /// goes on like that in every direction: texels of a square of twice that and one.
+    reach: Vec<u8>,
 }
 
 /// A triangle with holes, for engines that follow the sun across it.
@@ -40,6 +43,8 @@ pub(crate) struct CutView<'a> {
     pub alphas: [f64; 3],
     /// Least alpha that is solid.
     pub cutoff: f64,
+    /// Whether the corners' alphas are the material's own, for which [`Mask::reach`] was made.
+    is_plain: bool,
     mask: Option<&'a Mask>,
 }
 
@@ -57,39 +62,31 @@ impl CutView<'_> {
         f64::from(mask.alpha[y as usize * mask.size[0] as usize + x as usize]) / 255.0
     }
 
-    /// The largest square of texels around one (level n of [`Mask::ranges`] has squares of 2^n) that is solid throughout or
-    /// clear throughout: its borders `[[left, right], [top, bottom]]` and which it is. A texel in which alpha passes the
-    /// cutoff between the triangle's own alphas has no answer.
+    /// A square of texels around one that are all solid or all clear: its borders `[[left, right], [top, bottom]]` and
+    /// which it is. Where alpha may pass the cutoff within the texel there is no answer to that.
+    #[inline]
     pub fn uniform(&self, texel: [i64; 2]) -> ([[i64; 2]; 2], Option<bool>) {
-        let only = [[texel[0], texel[0] + 1], [texel[1], texel[1] + 1]];
-        let verdict = |[least, most]: [u8; 2]| {
-            let alpha = |value: u8, own: &f64| f64::from(value) / 255.0 * own;
-            let all = self.alphas.iter().all(|own| alpha(least, own) >= self.cutoff);
-            let none = self.alphas.iter().all(|own| alpha(most, own) < self.cutoff);
-            if all { Some(true) } else { none.then_some(false) }
-        };
-        let Some(mask) = self.mask else { return (only, verdict([255; 2])) };
-        let at = [0, 1].map(|k| wrap_texel(texel[k], mask.size[k], mask.wrap[k]));
-        let alpha = mask.alpha[at[1] as usize * mask.size[0] as usize + at[0] as usize];
-        let mut best = (only, verdict([alpha; 2]));
-        if best.1.is_none() || !mask.is_unturned(texel) {
-            return best;
+        let square = |reach: i64| texel.map(|at| [at - reach, at + 1 + reach]);
+        let Some(mask) = self.mask else { return (square(0), self.verdict(1.0)) };
+        if !self.is_plain || !mask.is_unturned(texel) {
+            return (square(0), self.verdict(self.alpha_of(texel)));
         }
-        for (level, (width, ranges)) in mask.ranges.iter().enumerate() {
-            let edge = 2u32 << level;
-            let square = at.map(|x| x / edge);
-            if verdict(ranges[square[1] as usize * width + square[0] as usize]) != best.1 {
-                break;
-            }
-            let side = |k: usize| {
-                let low = texel[k] - i64::from(at[k] - square[k] * edge);
-                [low, low + i64::from(edge.min(mask.size[k] - square[k] * edge))]
-            };
-            best.0 = [side(0), side(1)];
-        }
-        best
+        let x = wrap_texel(texel[0], mask.size[0], mask.wrap[0]);
+        let y = wrap_texel(texel[1], mask.size[1], mask.wrap[1]);
+        let reach = mask.reach[y as usize * mask.size[0] as usize + x as usize];
+        (square(i64::from(reach & !SOLID)), Some(reach & SOLID != 0))
+    }
+
+    /// Whether all of the triangle is solid, or clear, where the texture's alpha is this.
+    fn verdict(&self, alpha: f64) -> Option<bool> {
+        let all = self.alphas.iter().all(|own| own * alpha >= self.cutoff);
+        let none = self.alphas.iter().all(|own| own * alpha < self.cutoff);
+        if all { Some(true) } else { none.then_some(false) }
     }
 }
+
+/// Bit of [`Mask::reach`] that says that a texel is solid.
+const SOLID: u8 = 0x80;
 
 impl Cuts {
     const NONE: u32 = u32::MAX;
@@ -108,7 +105,12 @@ impl Cuts {
             let texture = material.base_color_texture;
             let mask = texture.map(|texture| {
                 *mask_of_material[mesh.material].get_or_insert_with(|| {
-                    cuts.masks.push(Mask::new(&scene.images[texture.image], texture.wrap));
+                    cuts.masks.push(Mask::new(
+                        &scene.images[texture.image],
+                        texture.wrap,
+                        f64::from(material.base_color.w),
+                        f64::from(cutoff),
+                    ));
                     cuts.masks.len() as u32 - 1
                 })
             });
@@ -117,6 +119,7 @@ impl Cuts {
                 image_uvs: texture.map_or([Vec2::ZERO; 3], |t| image_uvs(mesh, &t, surface.mesh_triangle)),
                 alphas: vertex_alphas(mesh, surface.mesh_triangle).map(|a| a * material.base_color.w),
                 cutoff,
+                is_plain: mesh.colors.is_none(),
                 mask,
             });
         }
@@ -138,6 +141,7 @@ impl Cuts {
             texel_uvs: triangle.image_uvs.map(|uv| uv.as_dvec2() * size),
             alphas: triangle.alphas.map(f64::from),
             cutoff: f64::from(triangle.cutoff),
+            is_plain: triangle.is_plain,
             mask,
         })
     }
@@ -158,28 +162,40 @@ impl Cuts {
     }
 }
 
-/// Ranges of squares twice as large: squares in a row, then the squares.
-fn halved([width, height]: [usize; 2], ranges: &[[u8; 2]]) -> (usize, Vec<[u8; 2]>) {
-    let (columns, rows) = (width.div_ceil(2), height.div_ceil(2));
-    let mut squares = vec![[255, 0]; columns * rows];
-    for (index, range) in ranges.iter().enumerate() {
-        let square: &mut [u8; 2] = &mut squares[index / width / 2 * columns + index % width / 2];
-        *square = [square[0].min(range[0]), square[1].max(range[1])];
-    }
-    (columns, squares)
+/// For each texel, whether it is solid and how far around it nothing changes, within the image: the distance to the nearest
+/// texel that differs, counted along the longer axis, less one. Two sweeps over the image suffice for that distance
+/// (Rosenfeld and Pfaltz, "Sequential operations in digital picture processing", 1966).
+fn reaches(solid: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
+    let differs = |a: usize, b: usize| solid[a] != solid[b];
+    let mut steps: Vec<u8> = (0..solid.len())
+        .map(|i| {
+            let (x, y) = (i % width, i / width);
+            let border = x.min(y).min(width - 1 - x).min(height - 1 - y);
+            border.min(usize::from(!SOLID)) as u8
+        })
+        .collect();
+    let mut relax = |i: usize, dx: isize, dy: isize| {
+        let (x, y) = ((i % width) as isize + dx, (i / width) as isize + dy);
+        if (0..width as isize).contains(&x) && (0..height as isize).contains(&y) {
+            let neighbour = y as usize * width + x as usize;
+            let most = if differs(i, neighbour) { 0 } else { steps[neighbour].saturating_add(1) };
+            steps[i] = steps[i].min(most);
+        }
+    };
+    let before = [(-1, 0), (-1, -1), (0, -1), (1, -1)];
+    (0..solid.len()).for_each(|i| before.iter().for_each(|&(dx, dy)| relax(i, dx, dy)));
+    (0..solid.len()).rev().for_each(|i| before.iter().for_each(|&(dx, dy)| relax(i, -dx, -dy)));
+    steps.iter().zip(solid).map(|(&reach, &solid)| if solid { reach | SOLID } else { reach }).collect()
 }
 
 impl Mask {
-    fn new(image: &crate::scene::Image, wrap: [Wrap; 2]) -> Self {
+    /// For a material's factor of alpha and its cutoff.
+    fn new(image: &crate::scene::Image, wrap: [Wrap; 2], factor: f64, cutoff: f64) -> Self {
         let alpha: Vec<u8> = image.rgba.iter().map(|texel| texel[3]).collect();
         let size = [image.width, image.height];
-        let single = alpha.iter().map(|&a| [a; 2]).collect::<Vec<_>>();
-        let mut ranges = vec![halved(size.map(|n| n as usize), &single)];
-        while let Some((width, squares)) = ranges.last().filter(|(_, squares)| squares.len() > 1) {
-            let next = halved([*width, squares.len() / width], squares);
-            ranges.push(next);
-        }
-        Self { size, wrap, alpha, ranges }
+        let solid: Vec<bool> = alpha.iter().map(|&a| f64::from(a) / 255.0 * factor >= cutoff).collect();
+        let reach = reaches(&solid, size.map(|n| n as usize));
+        Self { size, wrap, alpha, reach }
     }
 
     /// Whether texels run the same way around a texel as in the image itself, so that squares may be used.

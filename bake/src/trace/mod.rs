@@ -214,13 +214,13 @@ pub(crate) struct BinaryNode {
     pub first: u32,
 }
 
-/// A binary hierarchy over boxes, root first, and the order of its primitives: at most eight a leaf. Empty for no boxes.
+/// A binary hierarchy over boxes, root first, and the order of its primitives: one a leaf. Empty for no boxes.
 pub(crate) fn binary_hierarchy(boxes: &[[Vec3; 2]]) -> (Vec<BinaryNode>, Vec<u32>) {
     if boxes.is_empty() {
         return (Vec::new(), Vec::new());
     }
     let boxes: Vec<Padded> = boxes.iter().map(|&[low, high]| Padded(Aabb::new(low.into(), high.into()))).collect();
-    let params = BvhBuildParams { max_prims_per_leaf: 8, ..BvhBuildParams::medium_build() };
+    let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
     let bvh = build_bvh2(&boxes, params, &mut std::time::Duration::default());
     let node = |node: &obvhs::bvh2::node::Bvh2Node| BinaryNode {
         bounds: [node.aabb().min.into(), node.aabb().max.into()],

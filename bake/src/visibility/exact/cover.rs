@@ -5,9 +5,9 @@ use super::gaps::Gaps;
 use super::holes::{Parts, Pierced};
 use super::near::{hidden_near, meet};
 use super::seeds::Seeds;
-use super::solve::{Asked, Corners, Hidden, hide, leaf_corners, turned};
+use super::solve::{Hidden, Packet, hide, turned};
 use super::walk::bits;
-use super::wide::{Leaf, WIDTH};
+use super::wide::WIDTH;
 use crate::trace::Tracer;
 use fearless_simd::Simd;
 use glam::DVec3;
@@ -37,7 +37,12 @@ impl Query {
 pub(super) struct Coverer<'a> {
     tracer: &'a Tracer,
     frame: &'a ArcFrame,
+    /// What was of use at the point before.
     seeds: Seeds,
+    /// What is of use at this point.
+    next_seeds: Seeds,
+    /// Triangles to be solved next.
+    collected: Packet,
     /// Room for one answer a lane.
     hidden: [Hidden; MOST_LANES],
     /// Triangles of the packet at hand that closed something.
@@ -46,33 +51,45 @@ pub(super) struct Coverer<'a> {
 
 impl<'a> Coverer<'a> {
     pub fn new(tracer: &'a Tracer, frame: &'a ArcFrame) -> Self {
-        Self { tracer, frame, seeds: Seeds::default(), hidden: [Hidden::default(); MOST_LANES], useful: 0 }
+        Self {
+            tracer,
+            frame,
+            seeds: Seeds::default(),
+            next_seeds: Seeds::default(),
+            collected: Packet::default(),
+            hidden: [Hidden::default(); MOST_LANES],
+            useful: 0,
+        }
     }
 
-    /// Closes what a leaf hides; whether that was anything.
-    pub fn close_with_leaf<S: Simd>(&mut self, simd: S, leaf: &Leaf, query: &mut Query) -> bool {
-        let mut corners = [[[0.0; WIDTH]; 3]; 3];
-        leaf_corners(simd, leaf, &self.frame.arc_from_bake, &mut corners);
-        self.close(simd, &corners, &leaf.ids, leaf.count, query);
-        for slot in bits(self.useful) {
-            self.seeds.add(self.tracer, &self.frame.arc_from_bake, leaf.ids[slot]);
-        }
+    /// Puts a triangle among those to be solved next; whether there are then enough.
+    #[inline]
+    pub fn collect(&mut self, id: u32) -> bool {
+        let corners = self.tracer.corners()[id as usize].map(|corner| turned(corner, &self.frame.arc_from_bake));
+        self.collected.push(id, corners);
+        self.collected.count == WIDTH
+    }
+
+    /// Closes what the collected triangles hide; whether that was anything.
+    pub fn close_with_collected<S: Simd>(&mut self, simd: S, query: &mut Query) -> bool {
+        let collected = std::mem::take(&mut self.collected);
+        self.close(simd, &collected, query);
+        self.collected = collected;
+        self.collected.count = 0;
         self.useful != 0
     }
 
-    /// Closes what the seeds hide. Returns how many triangles were looked at.
+    /// Closes what was of use at the point before. Returns how many triangles were looked at.
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
-        self.seeds.next_point();
-        let mut seeds = std::mem::take(&mut self.seeds);
+        std::mem::swap(&mut self.seeds, &mut self.next_seeds);
+        self.next_seeds.clear();
+        let seeds = std::mem::take(&mut self.seeds);
         let mut triangles = 0;
-        for packet in &mut seeds.packets {
+        for packet in seeds.packets() {
             triangles += packet.count as u64;
-            self.close(simd, &packet.corners, &packet.ids, packet.count, query);
-            if self.useful != 0 {
-                packet.last_use = seeds.now;
-                if query.is_done() {
-                    break;
-                }
+            self.close(simd, packet, query);
+            if self.useful != 0 && query.is_done() {
+                break;
             }
         }
         self.seeds = seeds;
@@ -80,15 +97,20 @@ impl<'a> Coverer<'a> {
     }
 
     /// Closes what some triangles hide, and notes which did.
-    fn close<S: Simd>(&mut self, simd: S, corners: &Corners, ids: &[u32; WIDTH], count: usize, query: &mut Query) {
+    fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) {
+        let Packet { corners, ids, count } = packet;
         let lanes = self.frame.lanes.len();
-        let mut asked = [Asked { cos: 1.0, sin: 0.0, hull: [0.0; 2] }; MOST_LANES];
-        for ((asked, declination), gaps) in asked.iter_mut().zip(&self.frame.lanes).zip(&query.gaps) {
-            *asked = Asked { cos: declination.cos, sin: declination.sin, hull: gaps.hull() };
-        }
         let run_up = self.tracer.run_up();
-        let near = hide(simd, corners, query.origin, run_up * run_up, &asked[..lanes], &mut self.hidden[..lanes]);
-        let real = (1u32 << count) - 1;
+        let near = hide(
+            simd,
+            corners,
+            query.origin,
+            run_up * run_up,
+            &self.frame.lanes,
+            &query.gaps,
+            &mut self.hidden[..lanes],
+        );
+        let real = (1u32 << *count) - 1;
         self.useful = 0;
         for lane in 0..lanes {
             for slot in bits(self.hidden[lane].mask & real & !near) {
@@ -96,15 +118,18 @@ impl<'a> Coverer<'a> {
                 let closed = if hidden.split & (1 << slot) == 0 && !self.tracer.has_holes(ids[slot]) {
                     query.gaps[lane].close([hidden.low[slot], hidden.high[slot]])
                 } else {
-                    self.close_pieces(ids[slot], &pieces(hidden, slot), lane, query)
+                    self.close_pieces(simd, ids[slot], &pieces(hidden, slot), lane, query)
                 };
                 self.useful |= u32::from(closed > 0.0) << slot;
             }
             for slot in bits(near & real) {
                 let corners = self.relative(ids[slot], query.origin);
                 let spans = hidden_near(self.frame, lane, corners, run_up);
-                self.useful |= u32::from(self.close_pieces(ids[slot], &spans, lane, query) > 0.0) << slot;
+                self.useful |= u32::from(self.close_pieces(simd, ids[slot], &spans, lane, query) > 0.0) << slot;
             }
+        }
+        for slot in bits(self.useful) {
+            self.next_seeds.add(ids[slot], packet.corners_of(slot));
         }
     }
 
@@ -114,7 +139,7 @@ impl<'a> Coverer<'a> {
     }
 
     /// Closes what a triangle hides in several spans, or with holes.
-    fn close_pieces(&self, id: u32, spans: &[[f64; 2]], lane: usize, query: &mut Query) -> f64 {
+    fn close_pieces<S: Simd>(&self, simd: S, id: u32, spans: &[[f64; 2]], lane: usize, query: &mut Query) -> f64 {
         let open = meet(spans, query.gaps[lane].as_slice());
         if open.is_empty() || !self.tracer.has_holes(id) {
             return open.iter().map(|&span| query.gaps[lane].close(span)).sum();
@@ -122,7 +147,7 @@ impl<'a> Coverer<'a> {
         let Some(cut) = self.tracer.cut(id) else { return 0.0 };
         let pierced = Pierced::new(cut, self.relative(id, query.origin), self.frame.lanes[lane]);
         let mut solid = Parts::new();
-        open.iter().for_each(|&span| pierced.solid_parts(span, &mut solid));
+        open.iter().for_each(|&span| pierced.solid_parts(simd, span, &mut solid));
         solid.iter().map(|&span| query.gaps[lane].close(span)).sum()
     }
 }

@@ -50,15 +50,6 @@ impl Gaps {
         self.0.is_empty()
     }
 
-    /// From the first gap's start to the last one's end; nothing if there is none.
-    #[inline]
-    pub fn hull(&self) -> [f64; 2] {
-        match (self.0.first(), self.0.last()) {
-            (Some(first), Some(last)) => [first[0], last[1]],
-            _ => [f64::INFINITY, f64::NEG_INFINITY],
-        }
-    }
-
     /// Takes a span out; returns how much that closed.
     #[inline]
     pub fn close(&mut self, [start, end]: [f64; 2]) -> f64 {

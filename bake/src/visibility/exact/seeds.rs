@@ -1,43 +1,43 @@
-//! The occluders of the points before, tried first: what hides the sun from a texel mostly hides it from the next.
+//! The occluders of the point before, tried first: what hides the sun from a texel mostly hides it from the next.
 
-use super::solve::{Packet, turned};
+use super::solve::Packet;
 use super::wide::WIDTH;
-use crate::trace::Tracer;
-use glam::DMat3;
+use glam::DVec3;
 
-/// Most packets kept; more are thinned to those of late use.
-const MOST_PACKETS: usize = 12;
-/// For how many points a packet is kept that closes nothing.
-const PATIENCE: u32 = 6;
+/// Most packets kept from one point for the next.
+const MOST_PACKETS: usize = 16;
 
-/// Triangles ready to be solved, in the order in which they are tried.
+/// Triangles ready to be solved, in the order in which they were of use.
 #[derive(Default)]
 pub(super) struct Seeds {
-    pub packets: Vec<Packet>,
-    /// Numbers the points.
-    pub now: u32,
+    packets: Vec<Packet>,
+    count: usize,
 }
 
 impl Seeds {
-    /// Adds a triangle.
-    pub fn add(&mut self, tracer: &Tracer, arc_from_tracer: &DMat3, id: u32) {
-        if self.packets.last().is_none_or(|packet| packet.count == WIDTH) {
-            self.packets.push(Packet::default());
+    /// Adds a triangle, given by its corners in the arc's frame; of very many, the last are forgotten.
+    pub fn add(&mut self, id: u32, corners: [DVec3; 3]) {
+        let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == WIDTH);
+        if is_full && self.count == MOST_PACKETS {
+            return;
         }
-        let now = self.now;
-        if let Some(packet) = self.packets.last_mut() {
-            packet.push(id, tracer.corners()[id as usize].map(|corner| turned(corner, arc_from_tracer)));
-            packet.last_use = now;
+        if is_full {
+            if self.packets.len() == self.count {
+                self.packets.push(Packet::default());
+            }
+            self.packets[self.count].count = 0;
+            self.count += 1;
         }
+        self.packets[self.count - 1].push(id, corners);
     }
 
-    /// Goes on to the next point; drops what has been of no use for a while.
-    pub fn next_point(&mut self) {
-        self.now += 1;
-        let now = self.now;
-        if self.packets.len() > MOST_PACKETS {
-            self.packets.retain(|packet| now - packet.last_use <= PATIENCE);
-            self.packets.truncate(MOST_PACKETS);
-        }
+    /// Forgets all of them.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// The triangles.
+    pub fn packets(&self) -> &[Packet] {
+        &self.packets[..self.count]
     }
 }

@@ -12,21 +12,21 @@
 //! Triangles whose plane is within the run-up of shadow rays need a case of their own (`near.rs`), and those with holes
 //! too (`holes.rs`): both are told apart here.
 
-use super::wide::{Leaf, WIDTH};
+use super::arc::Declination;
+use super::gaps::Gaps;
+use super::wide::WIDTH;
 use fearless_simd::{f64x8, mask64x8, prelude::*};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 /// Corners of eight triangles: by corner, axis and triangle.
 pub(super) type Corners = [[[f64; WIDTH]; 3]; 3];
 
 /// Up to eight triangles, corners in the arc's frame.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct Packet {
     pub corners: Corners,
     pub ids: [u32; WIDTH],
     pub count: usize,
-    /// When it last closed something.
-    pub last_use: u32,
 }
 
 impl Packet {
@@ -40,44 +40,17 @@ impl Packet {
         }
         self.count += 1;
     }
-}
 
-/// A leaf's corners in the arc's frame.
-pub(super) fn leaf_corners<S: Simd>(simd: S, leaf: &Leaf, rotation: &DMat3, corners: &mut Corners) {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            for (corner, turned) in leaf.corners.iter().zip(corners) {
-                let x = widened(simd, &corner[0]);
-                let y = widened(simd, &corner[1]);
-                let z = widened(simd, &corner[2]);
-                for k in 0..3 {
-                    let row = rotation.row(k);
-                    (x * row.x + y * row.y + z * row.z).store_slice(&mut turned[k]);
-                }
-            }
-        },
-    );
-}
-
-#[inline(always)]
-fn widened<S: Simd>(simd: S, values: &[f32; WIDTH]) -> f64x8<S> {
-    let mut wide = [0.0; WIDTH];
-    for k in 0..WIDTH {
-        wide[k] = f64::from(values[k]);
+    /// A triangle's corners.
+    pub fn corners_of(&self, slot: usize) -> [DVec3; 3] {
+        self.corners.each_ref().map(|[x, y, z]| DVec3::new(x[slot], y[slot], z[slot]))
     }
-    f64x8::from_slice(simd, &wide)
 }
 
-/// One corner in the arc's frame, by the same operations.
+/// A corner in the arc's frame. Every corner goes through here, so that triangles which share it agree about it exactly.
 #[inline]
-pub(super) fn turned(corner: glam::Vec3, rotation: &DMat3) -> DVec3 {
-    let [x, y, z] = corner.to_array().map(f64::from);
-    let along = |k: usize| {
-        let row = rotation.row(k);
-        x * row.x + y * row.y + z * row.z
-    };
-    DVec3::new(along(0), along(1), along(2))
+pub(super) fn turned(corner: Vec3, rotation: &DMat3) -> DVec3 {
+    rotation.x_axis * f64::from(corner.x) + rotation.y_axis * f64::from(corner.y) + rotation.z_axis * f64::from(corner.z)
 }
 
 /// What eight triangles hide at one declination, within the hull of what is asked about.
@@ -93,34 +66,23 @@ pub(super) struct Hidden {
     pub cuts: [[[f64; WIDTH]; 2]; 3],
 }
 
-/// A declination and which part of its arc is asked about, in diamond angles; nothing if the second is not above the first.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Asked {
-    pub cos: f64,
-    pub sin: f64,
-    pub hull: [f64; 2],
-}
-
-/// What eight triangles hide from a point at some declinations. Returns the triangles whose plane is within the run-up
+/// What eight triangles hide from a point at some declinations, as far as that meets the gaps asked about. Returns the triangles whose plane is within the run-up
 /// (given squared), of which the rest of the answer is not to be believed.
 pub(super) fn hide<S: Simd>(
     simd: S,
     corners: &Corners,
     origin: DVec3,
     run_up2: f64,
-    asked: &[Asked],
+    lanes: &[Declination],
+    gaps: &[Gaps],
     hidden: &mut [Hidden],
 ) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
             let edges = edges(simd, corners, origin, run_up2);
-            for (asked, hidden) in asked.iter().zip(hidden) {
-                if asked.hull[0] < asked.hull[1] {
-                    hide_at(simd, &edges, asked, hidden);
-                } else {
-                    hidden.mask = 0;
-                }
+            for ((declination, gaps), hidden) in lanes.iter().zip(gaps).zip(hidden) {
+                hide_at(simd, &edges, *declination, gaps.as_slice(), hidden);
             }
             edges.near
         },
@@ -173,16 +135,25 @@ fn scaled<S: Simd>(a: [f64x8<S>; 3], scale: f64x8<S>) -> [f64x8<S>; 3] {
 }
 
 #[inline(always)]
-fn hide_at<S: Simd>(simd: S, edges: &Edges<S>, asked: &Asked, hidden: &mut Hidden) {
+fn hide_at<S: Simd>(
+    simd: S,
+    edges: &Edges<S>,
+    Declination { cos, sin }: Declination,
+    gaps: &[[f64; 2]],
+    hidden: &mut Hidden,
+) {
+    hidden.mask = 0;
+    hidden.split = 0;
+    let (Some(first_gap), Some(last_gap)) = (gaps.first(), gaps.last()) else { return };
+    let hull = [first_gap[0], last_gap[1]];
     let (before, after) = (f64x8::splat(simd, -3.0), f64x8::splat(simd, 3.0));
     let (mut low, mut high) = (before, after);
-    hidden.split = 0;
     for k in 0..3 {
         let edge = edges.normals[k];
-        let span = span(simd, edge[0] * asked.cos, edge[1] * asked.cos, edge[2] * asked.sin);
+        let span = span(simd, edge[0] * cos, edge[1] * cos, edge[2] * sin);
         let crosses = span.start.simd_gt(span.end) & span.is_part;
-        let has_start = !(crosses & span.start.simd_gt(asked.hull[1]));
-        let has_end = !(crosses & span.end.simd_lt(asked.hull[0]) & has_start);
+        let has_start = !(crosses & span.start.simd_gt(hull[1]));
+        let has_end = !(crosses & span.end.simd_lt(hull[0]) & has_start);
         let is_split = crosses & has_start & has_end;
         low = low.max((!has_start | is_split).select(before, span.start));
         high = high.min((!has_end | is_split).select(after, span.end));
@@ -194,13 +165,18 @@ fn hide_at<S: Simd>(simd: S, edges: &Edges<S>, asked: &Asked, hidden: &mut Hidde
         } else {
             hidden.cuts[k] = [[3.0; WIDTH], [-3.0; WIDTH]];
         }
+        // Most triangles are off the sun's way altogether, and one or two edges tell.
+        let mut alive = low.simd_lt(low);
+        for gap in gaps {
+            alive |= low.simd_lt(gap[1]) & high.simd_gt(gap[0]);
+        }
+        hidden.mask = (alive & low.simd_lt(high)).to_bitmask() as u32;
+        if hidden.mask == 0 {
+            return;
+        }
     }
-    let alive = low.simd_lt(high) & low.simd_lt(asked.hull[1]) & high.simd_gt(asked.hull[0]);
-    hidden.mask = alive.to_bitmask() as u32;
-    if hidden.mask != 0 {
-        low.store_slice(&mut hidden.low);
-        high.store_slice(&mut hidden.high);
-    }
+    low.store_slice(&mut hidden.low);
+    high.store_slice(&mut hidden.high);
 }
 
 /// Where eight functions `a cos h + b sin h + c` are not negative: see [`super::arc::half_space`], its scalar twin.

@@ -2,14 +2,15 @@
 
 use super::boxes::{Seen, Wanted, node_seen};
 use super::cover::{Coverer, Query};
-use super::wide::{Child, WIDTH, Wide};
+use super::wide::{Child, Wide};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
-/// Where a walk has yet to go.
+/// A node that a walk has yet to go to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pending {
-    child: Child,
+    node: u32,
+    near: f32,
     span: [f32; 2],
 }
 
@@ -24,58 +25,47 @@ pub(super) fn close_by_walk<S: Simd>(
     work: &mut Work,
 ) {
     stack.clear();
-    stack.push(Pending { child: Child::Node(0), span: [-3.0, 3.0] });
+    stack.push(Pending { node: 0, near: 0.0, span: [-3.0, 3.0] });
     let mut seen = Seen::default();
     while let Some(pending) = stack.pop() {
         if !wanted.wants(pending.span) {
             continue;
         }
-        match pending.child {
-            Child::Node(index) => {
-                work.nodes += 1;
-                let node = &wide.nodes[index as usize];
-                node_seen(simd, node, &wanted, &mut seen);
-                push_far_first(stack, &node.child, &seen.near, seen.mask, &seen.span);
-            }
-            Child::Leaf(index) => {
-                let leaf = &wide.leaves[index as usize];
-                work.triangles += leaf.count as u64;
-                if coverer.close_with_leaf(simd, leaf, query) {
-                    if query.is_done() {
-                        return;
+        work.nodes += 1;
+        let node = &wide.nodes[pending.node as usize];
+        node_seen(simd, node, &wanted, &mut seen);
+        let first = stack.len();
+        for lane in bits(seen.mask) {
+            match node.child[lane] {
+                Child::Node(index) => {
+                    let span = [seen.span[0][lane], seen.span[1][lane]];
+                    push_far_first(stack, first, Pending { node: index, near: seen.near[lane], span });
+                }
+                Child::Triangle(id) => {
+                    work.triangles += 1;
+                    if coverer.collect(id) && coverer.close_with_collected(simd, query) {
+                        if query.is_done() {
+                            return;
+                        }
+                        wanted.want(query);
                     }
-                    wanted.want(query);
                 }
             }
         }
     }
+    coverer.close_with_collected(simd, query);
 }
 
-/// Pushes the children that were met, nearest last.
-fn push_far_first(
-    stack: &mut Vec<Pending>,
-    children: &[Child; WIDTH],
-    near: &[f32; WIDTH],
-    mut mask: u32,
-    span: &[[f32; WIDTH]; 2],
-) {
-    let first = stack.len();
-    let mut distances = [0.0f32; WIDTH];
-    while mask != 0 {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask - 1;
-        let pending = Pending { child: children[lane], span: [span[0][lane], span[1][lane]] };
-        // Insertion sort: there are at most eight.
-        let mut at = stack.len() - first;
-        stack.push(pending);
-        while at > 0 && distances[at - 1] < near[lane] {
-            distances[at] = distances[at - 1];
-            stack[first + at] = stack[first + at - 1];
-            at -= 1;
-        }
-        distances[at] = near[lane];
-        stack[first + at] = pending;
+/// Pushes a node among its siblings, which start at `first`, so that the nearest is last.
+#[inline]
+fn push_far_first(stack: &mut Vec<Pending>, first: usize, new: Pending) {
+    let mut at = stack.len();
+    stack.push(new);
+    while at > first && stack[at - 1].near < new.near {
+        stack[at] = stack[at - 1];
+        at -= 1;
     }
+    stack[at] = new;
 }
 
 /// Numbers of the bits that are set.
