@@ -6,6 +6,7 @@
 //!
 //! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]).
 
+use super::arc::{ArcFrame, Declination};
 use super::cover::Query;
 use super::wide::{Node, WIDTH};
 use fearless_simd::{f32x8, mask32x8, prelude::*};
@@ -14,6 +15,8 @@ use smallvec::SmallVec;
 
 /// Most spans that are told apart; more are joined.
 const MOST_SPANS: usize = 8;
+/// Spans are told apart if they are at least this far from each other, in diamond angle: about a degree.
+const LEAST_SLIT: f32 = 0.02;
 /// Growth of spans of diamond angle: a few steps of an `f32` near 2.
 const ANGLE_PADDING: f32 = 2e-6;
 /// What the cone's condition is relaxed by, as a share of distance.
@@ -24,6 +27,8 @@ pub(super) struct Wanted {
     /// The point, axes of the boxes.
     centre: [f32; 3],
     arc_from_box: [[f32; 3]; 3],
+    /// Whether the boxes' axes are the arc's.
+    is_aligned: bool,
     /// Way that the surface faces, arc frame: what lies behind it is passed over.
     side: [f32; 3],
     padding: f32,
@@ -46,20 +51,38 @@ pub(super) struct Seen {
 
 /// Frames that a walk is about: where the boxes' axes and the arc's lie.
 pub(super) struct Frames {
-    pub box_from_tracer: DMat3,
-    pub arc_from_tracer: DMat3,
+    box_from_arc: DMat3,
+    arc_from_box: [[f32; 3]; 3],
+    is_aligned: bool,
     /// Cosine and sine of the least declination and of the greatest.
-    pub shell: [[f32; 2]; 2],
-    pub padding: f32,
+    shell: [[f32; 2]; 2],
+    padding: f32,
+}
+
+impl Frames {
+    /// For an arc's frame, over boxes of given axes that are grown by `padding`.
+    pub fn new(arc: &ArcFrame, box_from_tracer: DMat3, padding: f32) -> Self {
+        let by_sine = |a: &&Declination, b: &&Declination| a.sin.total_cmp(&b.sin);
+        let (low, high) = (arc.lanes.iter().min_by(by_sine), arc.lanes.iter().max_by(by_sine));
+        let box_from_arc = box_from_tracer * arc.arc_from_bake.transpose();
+        Self {
+            box_from_arc,
+            arc_from_box: [0, 1, 2].map(|k| box_from_arc.col(k).as_vec3().to_array()),
+            is_aligned: box_from_tracer == arc.arc_from_bake,
+            shell: [low, high].map(|d| d.map_or([1.0, 0.0], |d| [d.cos as f32, d.sin as f32])),
+            padding,
+        }
+    }
 }
 
 impl Wanted {
     /// Looks from a query's point for what hides any of its gaps.
     pub fn new(frames: &Frames, query: &Query) -> Self {
-        let in_box = frames.box_from_tracer * (frames.arc_from_tracer.transpose() * query.origin);
+        let in_box = frames.box_from_arc * query.origin;
         let mut wanted = Self {
             centre: in_box.as_vec3().to_array(),
-            arc_from_box: rows(frames.arc_from_tracer * frames.box_from_tracer.transpose()),
+            arc_from_box: frames.arc_from_box,
+            is_aligned: frames.is_aligned,
             side: query.side.as_vec3().to_array(),
             padding: frames.padding,
             shell: frames.shell,
@@ -75,11 +98,12 @@ impl Wanted {
         for gaps in &query.gaps {
             for &[start, end] in gaps.as_slice() {
                 let span = [start as f32 - ANGLE_PADDING, end as f32 + ANGLE_PADDING];
-                if self.spans.len() < MOST_SPANS {
-                    self.spans.push(span);
-                } else {
-                    let last = &mut self.spans[MOST_SPANS - 1];
-                    *last = [last[0].min(span[0]), last[1].max(span[1])];
+                let is_full = self.spans.len() == MOST_SPANS;
+                match self.spans.last_mut() {
+                    Some(last) if is_full || (last[0] <= span[0] && span[0] - last[1] < LEAST_SLIT) => {
+                        *last = [last[0].min(span[0]), last[1].max(span[1])];
+                    }
+                    _ => self.spans.push(span),
                 }
             }
         }
@@ -95,28 +119,29 @@ impl Wanted {
     }
 }
 
-fn rows(matrix: DMat3) -> [[f32; 3]; 3] {
-    [0, 1, 2].map(|k| matrix.row(k).as_vec3().to_array())
-}
-
 /// Which of a node's boxes are met.
 pub(super) fn node_seen<S: Simd>(simd: S, node: &Node, wanted: &Wanted, out: &mut Seen) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let zero = f32x8::splat(simd, 0.0);
             let x = f32x8::from_slice(simd, &node.centre[0]) - wanted.centre[0];
             let y = f32x8::from_slice(simd, &node.centre[1]) - wanted.centre[1];
             let z = f32x8::from_slice(simd, &node.centre[2]) - wanted.centre[2];
             let half_x = f32x8::from_slice(simd, &node.half[0]);
             let half_y = f32x8::from_slice(simd, &node.half[1]);
             let half_z = f32x8::from_slice(simd, &node.half[2]);
-            let mut sides = [[zero; 2]; 3];
-            for k in 0..3 {
-                let row = wanted.arc_from_box[k];
-                let middle = x * row[0] + y * row[1] + z * row[2];
-                let reach = half_x * row[0].abs() + half_y * row[1].abs() + half_z * row[2].abs() + wanted.padding;
-                sides[k] = [middle - reach, middle + reach];
+            let mut sides = [
+                [x - half_x - wanted.padding, x + half_x + wanted.padding],
+                [y - half_y - wanted.padding, y + half_y + wanted.padding],
+                [z - half_z - wanted.padding, z + half_z + wanted.padding],
+            ];
+            if !wanted.is_aligned {
+                for k in 0..3 {
+                    let row = wanted.arc_from_box[k];
+                    let middle = x * row[0] + y * row[1] + z * row[2];
+                    let reach = half_x * row[0].abs() + half_y * row[1].abs() + half_z * row[2].abs() + wanted.padding;
+                    sides[k] = [middle - reach, middle + reach];
+                }
             }
             seen(simd, sides, wanted, node.count, out);
         },

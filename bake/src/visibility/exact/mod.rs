@@ -15,7 +15,7 @@ use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
-use arc::{ArcFrame, Declination};
+use arc::ArcFrame;
 use boxes::{Frames, Wanted};
 use cover::{Coverer, Query};
 use fearless_simd::{Level, Simd, dispatch};
@@ -49,18 +49,9 @@ impl<'a> ExactEngine<'a> {
         let frames = ArcFrame::of_path(lanes);
         let axes = frames.first().map_or(DMat3::IDENTITY, |frame| frame.arc_from_bake);
         let wide = Wide::new(tracer, axes, BOX_PADDING);
-        let arcs = frames.into_iter().map(|frame| Arc::new(frame, axes)).collect();
+        let arc = |frame| Arc { frames: Frames::new(&frame, axes, BOX_PADDING), frame };
+        let arcs = frames.into_iter().map(arc).collect();
         Self { tracer, wide, arcs, lane_count: lanes.len(), level: Level::new() }
-    }
-}
-
-impl Arc {
-    fn new(frame: ArcFrame, box_from_tracer: DMat3) -> Self {
-        let by_sine = |a: &&Declination, b: &&Declination| a.sin.total_cmp(&b.sin);
-        let (low, high) = (frame.lanes.iter().min_by(by_sine), frame.lanes.iter().max_by(by_sine));
-        let shell = [low, high].map(|d| d.map_or([1.0, 0.0], |d| [d.cos as f32, d.sin as f32]));
-        let frames = Frames { box_from_tracer, arc_from_tracer: frame.arc_from_bake, shell, padding: BOX_PADDING };
-        Self { frame, frames }
     }
 }
 
