@@ -89,6 +89,8 @@ impl<'a> PageBaker<'a> {
                 let order = atlas::by_tiles(&samples, size);
                 let (tables, work) = self.find_lit(sun.engine, &samples, &order).ok_or(BakeError::Cancelled)?;
                 self.stats.rays += work.rays;
+                self.stats.node_tests += work.nodes;
+                self.stats.triangle_tests += work.triangles;
                 self.encode(index, sun, &samples, &order, &tables)
             }
         };

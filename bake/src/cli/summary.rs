@@ -154,9 +154,20 @@ fn loss_maps(manifest: &Manifest) -> Option<String> {
 
 fn engine(manifest: &Manifest) -> String {
     let stats = &manifest.stats;
-    let millions = stats.rays as f64 / 1e6;
-    let rate = millions / stats.seconds.visibility.max(1e-9);
-    format!("{}, {millions:.1} M rays at {rate:.1} M/s on {}", stats.engine, count(stats.threads as u64, "thread"))
+    let seconds = stats.seconds.visibility.max(1e-9);
+    let work = if stats.rays > 0 {
+        let millions = stats.rays as f64 / 1e6;
+        format!("{millions:.1} M rays at {:.1} M/s", millions / seconds)
+    } else {
+        let a_texel = |count: u64| count as f64 / (stats.texels as f64).max(1.0);
+        format!(
+            "{:.1} us, {:.0} nodes and {:.0} triangles a texel",
+            a_texel((seconds * 1e9) as u64) / 1e3,
+            a_texel(stats.node_tests),
+            a_texel(stats.triangle_tests)
+        )
+    };
+    format!("{}, {work} on {}", stats.engine, count(stats.threads as u64, "thread"))
 }
 
 fn cost(manifest: &Manifest) -> String {

@@ -214,8 +214,14 @@ pub struct Stats {
     pub most_intervals: u64,
     /// Engine and its parameters, as given on the command line.
     pub engine: String,
-    /// Rays traced.
+    /// Rays traced; none by the exact engine.
     pub rays: u64,
+    /// Hierarchy nodes that the exact engine looked into, eight boxes each.
+    #[serde(default)]
+    pub node_tests: u64,
+    /// Triangles that the exact engine solved.
+    #[serde(default)]
+    pub triangle_tests: u64,
     /// Bytes of all files of the set but the manifest.
     pub bytes: u64,
     /// Threads used.

@@ -1,4 +1,36 @@
-//! Exact intervals: one query a point instead of many rays.
+//! Lit intervals in closed form: one walk of a hierarchy a point instead of many rays.
+//!
+//! **Theory.** Seen from one point, the suns of an arc lie on a cone about its axis, and for any vector n the product
+//! `n . dir(h)` is `A cos h + B sin h + C`, not negative on one span of hour angle whose ends are known in closed form
+//! (`arc.rs`). The horizon, the surface's plane and each edge of a triangle, joined with the point to a plane, are such
+//! spans. What a triangle hides is where those of its three edges meet (`solve.rs`), and what all triangles hide is the
+//! union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
+//!
+//! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
+//! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then an
+//! eight-wide hierarchy with a box for every triangle (`wide.rs`) is walked, near things first (`walk.rs`), past boxes that
+//! no sun still lit can meet (`boxes.rs`, `f32`, padded); triangles that pass are collected and solved eight at a time in
+//! `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones for its cone. Triangles
+//! with holes are followed from texel to texel (`holes.rs`), triangles within the run-up of shadow rays have a case of
+//! their own (`near.rs`). SIMD is chosen at run time and changes no bit: nothing is fused, every operation rounds alike.
+//!
+//! **What was tried.** Ratios are from scenes of 36,000 to 600,000 triangles, before and after, on shared cores.
+//!
+//! * Eight triangles at a time in `f64`: 70 ns for eight where the scalar prototype took 120 to 150 ns for one.
+//! * A box for every triangle instead of leaves of eight: half as many triangles solved, 0.7 to 0.95 of the time.
+//! * The last point's occluders first, copied as they are found: a third fewer triangles than a list that ages.
+//! * Squares of equal texels around holes (a distance map of the mask): 0.6 of the time where there is foliage.
+//! * Leaving off the turn into the arc's frame where boxes already lie along it: 0.95.
+//! * One list of candidates for a block of 16 or 64 texels, gathered where a few scouts saw light, the rest presumed dark and
+//!   checked: **lost**, 1 to 1.5 times the time. Near surfaces are seen from a block under all angles at once, so lists hold
+//!   hundreds of triangles just where scenes are dense. Bounding each candidate's span over the block (edge functions are
+//!   linear in the point) took only a tenth off the lists.
+//! * Testing the boxes of a leaf's triangles before solving the leaf as a whole: **lost**, some box is nearly always met.
+//! * Working on gaps kept on the heap: half of all time went to allocation; they are held in place.
+//!
+//! **What is left.** On dense scenes four tenths of the time go to boxes (their nodes miss the caches), two to solving, up
+//! to two to holes. Against rays, the gain is least where everything is dark, since a ray that knows its occluder costs
+//! 30 ns, and greatest on open scenes.
 
 mod arc;
 mod boxes;

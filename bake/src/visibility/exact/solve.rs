@@ -50,7 +50,9 @@ impl Packet {
 /// A corner in the arc's frame. Every corner goes through here, so that triangles which share it agree about it exactly.
 #[inline]
 pub(super) fn turned(corner: Vec3, rotation: &DMat3) -> DVec3 {
-    rotation.x_axis * f64::from(corner.x) + rotation.y_axis * f64::from(corner.y) + rotation.z_axis * f64::from(corner.z)
+    rotation.x_axis * f64::from(corner.x)
+        + rotation.y_axis * f64::from(corner.y)
+        + rotation.z_axis * f64::from(corner.z)
 }
 
 /// What eight triangles hide at one declination, within the hull of what is asked about.
