@@ -208,7 +208,7 @@ fn texels_a_second(engine: &dyn Engine, runs: &[Vec<SurfacePoint>], threads: usi
     pool.install(|| {
         runs.par_iter().for_each(|run| {
             ask(engine, run);
-        })
+        });
     });
     runs.iter().map(Vec::len).sum::<usize>() as f64 / started.elapsed().as_secs_f64()
 }

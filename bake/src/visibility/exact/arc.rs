@@ -120,8 +120,9 @@ impl HalfSpace {
 pub(super) fn half_space(a: f64, b: f64, c: f64) -> HalfSpace {
     let r2 = a * a + b * b;
     let d = r2 - c * c;
-    // Not `d <= 0.0`: what is not a number hides nothing.
-    if !(d > 0.0) {
+    let is_part = d > 0.0;
+    if !is_part {
+        // Of what is not a number, nothing.
         return if c >= 0.0 { HalfSpace::of(&[[-2.0, 2.0]]) } else { HalfSpace::of(&[]) };
     }
     let w = d.sqrt();

@@ -136,11 +136,10 @@ pub(super) fn node_seen<S: Simd>(simd: S, node: &Node, wanted: &Wanted, out: &mu
                 [z - half_z - wanted.padding, z + half_z + wanted.padding],
             ];
             if !wanted.is_aligned {
-                for k in 0..3 {
-                    let row = wanted.arc_from_box[k];
+                for (side, row) in sides.iter_mut().zip(&wanted.arc_from_box) {
                     let middle = x * row[0] + y * row[1] + z * row[2];
                     let reach = half_x * row[0].abs() + half_y * row[1].abs() + half_z * row[2].abs() + wanted.padding;
-                    sides[k] = [middle - reach, middle + reach];
+                    *side = [middle - reach, middle + reach];
                 }
             }
             seen(simd, sides, wanted, node.count, out);

@@ -7,7 +7,6 @@ use super::near::{hidden_near, meet};
 use super::seeds::Seeds;
 use super::solve::{Hidden, Packet, hide, turned};
 use super::walk::bits;
-use super::wide::WIDTH;
 use crate::trace::Tracer;
 use fearless_simd::Simd;
 use glam::DVec3;
@@ -35,18 +34,14 @@ impl Query {
 
 /// What it takes to close gaps on one arc, and the triangles to try first.
 pub(super) struct Coverer<'a> {
-    tracer: &'a Tracer,
+    pub tracer: &'a Tracer,
     frame: &'a ArcFrame,
-    /// What was of use at the point before.
-    seeds: Seeds,
+    /// What was of use at the point before: solid triangles, and those with holes.
+    seeds: [Seeds; 2],
     /// What is of use at this point.
-    next_seeds: Seeds,
-    /// Triangles to be solved next.
-    collected: Packet,
+    next_seeds: [Seeds; 2],
     /// Room for one answer a lane.
     hidden: [Hidden; MOST_LANES],
-    /// Triangles of the packet at hand that closed something.
-    useful: u32,
 }
 
 impl<'a> Coverer<'a> {
@@ -54,41 +49,28 @@ impl<'a> Coverer<'a> {
         Self {
             tracer,
             frame,
-            seeds: Seeds::default(),
-            next_seeds: Seeds::default(),
-            collected: Packet::default(),
+            seeds: Default::default(),
+            next_seeds: Default::default(),
             hidden: [Hidden::default(); MOST_LANES],
-            useful: 0,
         }
     }
 
-    /// Puts a triangle among those to be solved next; whether there are then enough.
+    /// Adds a triangle to a packet.
     #[inline]
-    pub fn collect(&mut self, id: u32) -> bool {
-        let corners = self.tracer.corners()[id as usize].map(|corner| turned(corner, &self.frame.arc_from_bake));
-        self.collected.push(id, corners);
-        self.collected.count == WIDTH
+    pub fn add_to(&self, packet: &mut Packet, id: u32) {
+        packet.push(id, self.tracer.corners()[id as usize].map(|corner| turned(corner, &self.frame.arc_from_bake)));
     }
 
-    /// Closes what the collected triangles hide; whether that was anything.
-    pub fn close_with_collected<S: Simd>(&mut self, simd: S, query: &mut Query) -> bool {
-        let collected = std::mem::take(&mut self.collected);
-        self.close(simd, &collected, query);
-        self.collected = collected;
-        self.collected.count = 0;
-        self.useful != 0
-    }
-
-    /// Closes what was of use at the point before. Returns how many triangles were looked at.
+    /// Closes what was of use at the point before: solid triangles, then those with holes, which cost more. Returns how many
+    /// were looked at.
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
         std::mem::swap(&mut self.seeds, &mut self.next_seeds);
-        self.next_seeds.clear();
+        self.next_seeds.iter_mut().for_each(Seeds::clear);
         let seeds = std::mem::take(&mut self.seeds);
         let mut triangles = 0;
-        for packet in seeds.packets() {
+        for packet in seeds.iter().flat_map(Seeds::packets) {
             triangles += packet.count as u64;
-            self.close(simd, packet, query);
-            if self.useful != 0 && query.is_done() {
+            if self.close(simd, packet, query) && query.is_done() {
                 break;
             }
         }
@@ -96,8 +78,8 @@ impl<'a> Coverer<'a> {
         triangles
     }
 
-    /// Closes what some triangles hide, and notes which did.
-    fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) {
+    /// Closes what some triangles hide, and notes which did; whether any.
+    pub fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) -> bool {
         let Packet { corners, ids, count } = packet;
         let lanes = self.frame.lanes.len();
         let run_up = self.tracer.run_up();
@@ -111,7 +93,7 @@ impl<'a> Coverer<'a> {
             &mut self.hidden[..lanes],
         );
         let real = (1u32 << *count) - 1;
-        self.useful = 0;
+        let mut useful = 0;
         for lane in 0..lanes {
             for slot in bits(self.hidden[lane].mask & real & !near) {
                 let hidden = &self.hidden[lane];
@@ -120,17 +102,19 @@ impl<'a> Coverer<'a> {
                 } else {
                     self.close_pieces(simd, ids[slot], &pieces(hidden, slot), lane, query)
                 };
-                self.useful |= u32::from(closed > 0.0) << slot;
+                useful |= u32::from(closed > 0.0) << slot;
             }
             for slot in bits(near & real) {
                 let corners = self.relative(ids[slot], query.origin);
                 let spans = hidden_near(self.frame, lane, corners, run_up);
-                self.useful |= u32::from(self.close_pieces(simd, ids[slot], &spans, lane, query) > 0.0) << slot;
+                useful |= u32::from(self.close_pieces(simd, ids[slot], &spans, lane, query) > 0.0) << slot;
             }
         }
-        for slot in bits(self.useful) {
-            self.next_seeds.add(ids[slot], packet.corners_of(slot));
+        for slot in bits(useful) {
+            let kind = usize::from(self.tracer.has_holes(ids[slot]));
+            self.next_seeds[kind].add(ids[slot], packet.corners_of(slot));
         }
+        useful != 0
     }
 
     /// Corners of a triangle relative to a point, arc frame.

@@ -54,7 +54,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use gaps::Gaps;
 use glam::{DMat3, DVec3};
 use smallvec::SmallVec;
-use walk::{Pending, close_by_walk};
+use walk::{Room, close_by_walk};
 use wide::Wide;
 
 /// Growth of every box, tracer space (whose half size is 512 to 1024): four times the steps of an `f32` that turning a
@@ -99,7 +99,7 @@ impl Engine for ExactEngine<'_> {
     fn session(&self) -> Box<dyn Session + '_> {
         let coverer = |arc| Coverer::new(self.tracer, arc);
         let coverers = self.arcs.iter().map(|arc| [coverer(&arc.frame), coverer(&arc.frame)]).collect();
-        Box::new(ExactSession { engine: self, coverers, work: Work::default(), stack: Vec::new() })
+        Box::new(ExactSession { engine: self, coverers, work: Work::default(), room: Room::default() })
     }
 }
 
@@ -108,7 +108,7 @@ struct ExactSession<'a> {
     /// For each arc, one for each side of a surface: seeds of the front are not those of the back.
     coverers: Vec<[Coverer<'a>; 2]>,
     work: Work,
-    stack: Vec<Pending>,
+    room: Room,
 }
 
 impl Session for ExactSession<'_> {
@@ -170,7 +170,8 @@ impl ExactSession<'_> {
         self.work.triangles += coverer.close_with_seeds(simd, query);
         if !query.is_done() {
             let wanted = Wanted::new(&self.engine.arcs[index].frames, query);
-            close_by_walk(simd, &self.engine.wide, wanted, coverer, query, &mut self.stack, &mut self.work);
+            let work = close_by_walk(simd, &self.engine.wide, wanted, coverer, query, &mut self.room);
+            self.work = self.work + work;
         }
     }
 }

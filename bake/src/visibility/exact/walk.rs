@@ -2,7 +2,8 @@
 
 use super::boxes::{Seen, Wanted, node_seen};
 use super::cover::{Coverer, Query};
-use super::wide::{Child, Wide};
+use super::solve::Packet;
+use super::wide::{Child, WIDTH, Wide};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
@@ -14,6 +15,14 @@ pub(super) struct Pending {
     span: [f32; 2],
 }
 
+/// Room that walks need, kept from one to the next.
+#[derive(Default)]
+pub(super) struct Room {
+    stack: Vec<Pending>,
+    /// Triangles to be solved together: solid ones, and those with holes.
+    collected: [Packet; 2],
+}
+
 /// Closes the query's gaps with whatever lies in the hierarchy. Stops when there is none.
 pub(super) fn close_by_walk<S: Simd>(
     simd: S,
@@ -21,12 +30,13 @@ pub(super) fn close_by_walk<S: Simd>(
     mut wanted: Wanted,
     coverer: &mut Coverer,
     query: &mut Query,
-    stack: &mut Vec<Pending>,
-    work: &mut Work,
-) {
+    Room { stack, collected }: &mut Room,
+) -> Work {
+    let mut work = Work::default();
+    let mut seen = Seen::default();
+    collected.iter_mut().for_each(|packet| packet.count = 0);
     stack.clear();
     stack.push(Pending { node: 0, near: 0.0, span: [-3.0, 3.0] });
-    let mut seen = Seen::default();
     while let Some(pending) = stack.pop() {
         if !wanted.wants(pending.span) {
             continue;
@@ -36,24 +46,33 @@ pub(super) fn close_by_walk<S: Simd>(
         node_seen(simd, node, &wanted, &mut seen);
         let first = stack.len();
         for lane in bits(seen.mask) {
-            match node.child[lane] {
-                Child::Node(index) => {
+            let id = match node.child[lane] {
+                Child::Triangle(id) => id,
+                Child::Node(node) => {
                     let span = [seen.span[0][lane], seen.span[1][lane]];
-                    push_far_first(stack, first, Pending { node: index, near: seen.near[lane], span });
+                    push_far_first(stack, first, Pending { node, near: seen.near[lane], span });
+                    continue;
                 }
-                Child::Triangle(id) => {
-                    work.triangles += 1;
-                    if coverer.collect(id) && coverer.close_with_collected(simd, query) {
-                        if query.is_done() {
-                            return;
-                        }
-                        wanted.want(query);
+            };
+            work.triangles += 1;
+            let packet = &mut collected[usize::from(coverer.tracer.has_holes(id))];
+            coverer.add_to(packet, id);
+            if packet.count == WIDTH {
+                let closed = coverer.close(simd, packet, query);
+                packet.count = 0;
+                if closed {
+                    if query.is_done() {
+                        return work;
                     }
+                    wanted.want(query);
                 }
             }
         }
     }
-    coverer.close_with_collected(simd, query);
+    for packet in collected {
+        coverer.close(simd, packet, query);
+    }
+    work
 }
 
 /// Pushes a node among its siblings, which start at `first`, so that the nearest is last.
