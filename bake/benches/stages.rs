@@ -1,8 +1,8 @@
-//! Seconds of every stage of a bake, with texels and rays a second: `cargo bench -p sunbake`.
+//! Seconds of every stage of a bake, with texels and rays a second: `cargo bench -p sunbake --bench stages`.
 //!
 //! Our own scene, and three shared ones where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
-//! repository). Arguments after `--` set the page size, the number of suns and, with `bisect`, the
-//! engine: `cargo bench -p sunbake -- 1024 256`, `cargo bench -p sunbake -- 1024 64 bisect`.
+//! repository). Arguments after `--` set the page size, and for another engine than the exact one the number of suns:
+//! `cargo bench -p sunbake --bench stages -- 1024 256`, or `-- 1024 64 bisect`.
 
 use std::path::{Path, PathBuf};
 use sunbake::progress::Silent;
@@ -15,9 +15,11 @@ const SHARED: [&str; 3] =
 fn main() {
     let numbers: Vec<usize> = std::env::args().filter_map(|a| a.parse().ok()).collect();
     let page_size = numbers.first().copied().unwrap_or(1024);
-    let count = numbers.get(1).copied().unwrap_or(256);
-    let bisects = std::env::args().any(|a| a == "bisect");
-    let engine = if bisects { EngineChoice::Bisect(count) } else { EngineChoice::Rays(count) };
+    let engine = match (numbers.get(1), std::env::args().any(|a| a == "bisect")) {
+        (None, _) => EngineChoice::Exact,
+        (Some(&count), false) => EngineChoice::Rays(count),
+        (Some(&count), true) => EngineChoice::Bisect(count),
+    };
     println!("pages of {page_size}, {engine}, {} thread(s)", rayon::current_num_threads());
     println!(
         "{:<20}{:>10}{:>10} |{:>8}{:>8}{:>8}{:>11}{:>8}{:>8} s |{:>11}{:>10}",
