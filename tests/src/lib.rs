@@ -95,10 +95,10 @@ pub fn path_of(arc: SunArc) -> SunPath {
     SunPath::new(vec![arc], 0.0, 720.0).expect("the arc is well formed")
 }
 
-/// How many random cases a test tries: as many as `SUNBAKE_CASES` says, or else these.
-pub fn cases(ordinarily: usize) -> usize {
-    let asked = std::env::var("SUNBAKE_CASES").ok();
-    asked.map_or(ordinarily, |text| text.parse().expect("SUNBAKE_CASES is a number"))
+/// How many of something a test tries: as many as an environment variable says, or else these.
+pub fn asked_for(variable: &str, ordinarily: usize) -> usize {
+    let asked = std::env::var(variable).ok();
+    asked.map_or(ordinarily, |text| text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no number")))
 }
 
 /// Where the shared scenes lie, if they are here: `SUNBAKE_SHARED`, or `shared` beside the repository.
