@@ -13,9 +13,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use sunbake::atlas::{Layout, LayoutOrigin, SurfacePoint};
 use sunbake::disk::read::{BakedSet, read};
+use sunbake::maps::{Bits, PageMaps, stored_intervals};
 use sunbake::progress::Silent;
 use sunbake::scene::{Geometry, Mesh, Scene};
-use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
 use sunbake::visibility::{Intervals, RayEngine, lit_at};
@@ -153,13 +154,9 @@ pub fn june_day() -> DayRequest {
     }
 }
 
-/// A small, quick bake: a page of 128, 64 suns, 16 bits.
+/// A small, quick bake: a page of 128, 16 bits.
 pub fn quick() -> BakeSettings {
-    BakeSettings {
-        page_size_texels: 128,
-        engine: EngineChoice::Rays(64),
-        ..BakeSettings::standard(SunRequest::Day(june_day()))
-    }
+    BakeSettings { page_size_texels: 128, ..BakeSettings::standard(SunRequest::Day(june_day())) }
 }
 
 /// Bakes a scene made by code into `FOLDER/NAME` and reads the set back.
@@ -168,6 +165,29 @@ pub fn bake_scene(scene: &Scene, settings: &BakeSettings, folder: &Path, name: &
     let target = folder.join(name);
     sunbake::bake(&file, &target, true, settings, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
     read(&target).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// From one code of 16 bits to the next.
+pub const CODE_STEP_T: f64 = 1.0 / 65_535.0;
+
+/// Share of texels whose stored times differ by more than a code step.
+pub fn share_that_differs(a: &BakedSet, b: &BakedSet) -> f64 {
+    assert_eq!(a.pages.len(), b.pages.len());
+    let (mut different, mut all) = (0usize, 0usize);
+    for (a, b) in a.pages.iter().zip(&b.pages) {
+        assert_eq!((a.width, a.height), (b.width, b.height));
+        for texel in 0..(a.width * a.height) as usize {
+            let times = |page: &PageMaps| stored_intervals(&page.lanes[0].layers, texel, Bits::Sixteen);
+            different += usize::from(!are_near(&times(a), &times(b)));
+            all += 1;
+        }
+    }
+    different as f64 / all as f64
+}
+
+fn are_near(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    let both = a.as_flattened().iter().zip(b.as_flattened());
+    a.len() == b.len() && both.map(|(a, b)| (a - b).abs()).all(|off_t| off_t <= 1.001 * CODE_STEP_T)
 }
 
 /// Runs the `sunbake` command of this build.
