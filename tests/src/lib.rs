@@ -19,7 +19,7 @@ use sunbake::scene::{Geometry, Mesh, Scene};
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
-use sunbake::visibility::{Intervals, RayEngine, lit_at};
+use sunbake::visibility::{ExactEngine, Intervals, RayEngine, lit_at};
 
 /// A scene with what it takes to trace it.
 pub struct Traced {
@@ -59,10 +59,17 @@ impl Traced {
         SurfacePoint { normal, ..self.point_at(world, triangle) }
     }
 
-    /// When a point sees the sun, by `count` rays.
-    pub fn lit_by_rays(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> Intervals {
-        let engine = RayEngine::new(&self.tracer, std::slice::from_ref(path), count);
-        lit_at(&engine, point).swap_remove(0)
+    /// When a point sees the sun, by `count` rays and exactly, each with how far off its edges may be in `t`.
+    pub fn lit_by_both(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> [(Intervals, f64); 2] {
+        let lanes = std::slice::from_ref(path);
+        let rays = lit_at(&RayEngine::new(&self.tracer, lanes, count), point).swap_remove(0);
+        let exact = lit_at(&ExactEngine::new(&self.tracer, lanes), point).swap_remove(0);
+        [(rays, 1.0 / count as f64), (exact, 1e-9)]
+    }
+
+    /// Where a point's rays towards suns before it start, in world space.
+    pub fn start(&self, point: &SurfacePoint) -> DVec3 {
+        self.tracer.lift(point.position_m, point.normal, point.triangle) + self.scene.centre_m
     }
 }
 
