@@ -108,10 +108,16 @@ fn lasting(found: &Intervals, shortest_t: f64) -> Intervals {
 /// Every engine must keep its word about these points.
 #[track_caller]
 pub fn all_must_agree(case: &str, here: &Traced, path: &SunPath, points: &[SurfacePoint]) {
+    must_agree(&ALL, case, here, path, points);
+}
+
+/// These engines must keep their word about these points.
+#[track_caller]
+pub fn must_agree(engines: &[Candidate], case: &str, here: &Traced, path: &SunPath, points: &[SurfacePoint]) {
     let oracle = Oracle::new(here, path, SUNS);
     for (point, truth) in points.iter().zip(oracle.lit_all(points)) {
         let complaints: Vec<String> =
-            ALL.iter().filter_map(|engine| engine.complaint(here, path, point, &truth)).collect();
+            engines.iter().filter_map(|engine| engine.complaint(here, path, point, &truth)).collect();
         assert!(complaints.is_empty(), "{case}: {}", complaints.join("\n"));
     }
 }

@@ -13,12 +13,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use sunbake::atlas::{Layout, LayoutOrigin, SurfacePoint};
 use sunbake::disk::read::{BakedSet, read};
+use sunbake::maps::{Bits, PageMaps, stored_intervals};
 use sunbake::progress::Silent;
 use sunbake::scene::{Geometry, Mesh, Scene};
-use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
-use sunbake::visibility::{Intervals, RayEngine, lit_at};
+use sunbake::visibility::{ExactEngine, Intervals, RayEngine, lit_at};
 
 /// A scene with what it takes to trace it.
 pub struct Traced {
@@ -58,10 +59,17 @@ impl Traced {
         SurfacePoint { normal, ..self.point_at(world, triangle) }
     }
 
-    /// When a point sees the sun, by `count` rays.
-    pub fn lit_by_rays(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> Intervals {
-        let engine = RayEngine::new(&self.tracer, std::slice::from_ref(path), count);
-        lit_at(&engine, point).swap_remove(0)
+    /// When a point sees the sun, by `count` rays and exactly, each with how far off its edges may be in `t`.
+    pub fn lit_by_both(&self, path: &SunPath, count: usize, point: &SurfacePoint) -> [(Intervals, f64); 2] {
+        let lanes = std::slice::from_ref(path);
+        let rays = lit_at(&RayEngine::new(&self.tracer, lanes, count), point).swap_remove(0);
+        let exact = lit_at(&ExactEngine::new(&self.tracer, lanes), point).swap_remove(0);
+        [(rays, 1.0 / count as f64), (exact, 1e-9)]
+    }
+
+    /// Where a point's rays towards suns before it start, in world space.
+    pub fn start(&self, point: &SurfacePoint) -> DVec3 {
+        self.tracer.lift(point.position_m, point.normal, point.triangle) + self.scene.centre_m
     }
 }
 
@@ -95,10 +103,10 @@ pub fn path_of(arc: SunArc) -> SunPath {
     SunPath::new(vec![arc], 0.0, 720.0).expect("the arc is well formed")
 }
 
-/// How many random cases a test tries: as many as `SUNBAKE_CASES` says, or else these.
-pub fn cases(ordinarily: usize) -> usize {
-    let asked = std::env::var("SUNBAKE_CASES").ok();
-    asked.map_or(ordinarily, |text| text.parse().expect("SUNBAKE_CASES is a number"))
+/// How many of something a test tries: as many as an environment variable says, or else these.
+pub fn asked_for(variable: &str, ordinarily: usize) -> usize {
+    let asked = std::env::var(variable).ok();
+    asked.map_or(ordinarily, |text| text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no number")))
 }
 
 /// Where the shared scenes lie, if they are here: `SUNBAKE_SHARED`, or `shared` beside the repository.
@@ -153,13 +161,9 @@ pub fn june_day() -> DayRequest {
     }
 }
 
-/// A small, quick bake: a page of 128, 64 suns, 16 bits.
+/// A small, quick bake: a page of 128, 16 bits.
 pub fn quick() -> BakeSettings {
-    BakeSettings {
-        page_size_texels: 128,
-        engine: EngineChoice::Rays(64),
-        ..BakeSettings::standard(SunRequest::Day(june_day()))
-    }
+    BakeSettings { page_size_texels: 128, ..BakeSettings::standard(SunRequest::Day(june_day())) }
 }
 
 /// Bakes a scene made by code into `FOLDER/NAME` and reads the set back.
@@ -168,6 +172,29 @@ pub fn bake_scene(scene: &Scene, settings: &BakeSettings, folder: &Path, name: &
     let target = folder.join(name);
     sunbake::bake(&file, &target, true, settings, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
     read(&target).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// From one code of 16 bits to the next.
+pub const CODE_STEP_T: f64 = 1.0 / 65_535.0;
+
+/// Share of texels whose stored times differ by more than a code step.
+pub fn share_that_differs(a: &BakedSet, b: &BakedSet) -> f64 {
+    assert_eq!(a.pages.len(), b.pages.len());
+    let (mut different, mut all) = (0usize, 0usize);
+    for (a, b) in a.pages.iter().zip(&b.pages) {
+        assert_eq!((a.width, a.height), (b.width, b.height));
+        for texel in 0..(a.width * a.height) as usize {
+            let times = |page: &PageMaps| stored_intervals(&page.lanes[0].layers, texel, Bits::Sixteen);
+            different += usize::from(!are_near(&times(a), &times(b)));
+            all += 1;
+        }
+    }
+    different as f64 / all as f64
+}
+
+fn are_near(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    let both = a.as_flattened().iter().zip(b.as_flattened());
+    a.len() == b.len() && both.map(|(a, b)| (a - b).abs()).all(|off_t| off_t <= 1.001 * CODE_STEP_T)
 }
 
 /// Runs the `sunbake` command of this build.

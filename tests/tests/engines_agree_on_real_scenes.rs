@@ -1,6 +1,6 @@
 //! Hard case I7: random texels of the shared scenes and of our own, against brute force in `f64` with 65,536 suns a path.
 //!
-//! A few texels a scene by default; `SUNBAKE_CASES=1000 tests/run -E 'test(real_scenes)' --no-capture` tries a thousand
+//! A few texels a scene by default; `SUNBAKE_TEXELS=1000 tests/run -E 'test(real_scenes)' --no-capture` tries a thousand
 //! and prints the table.
 
 use std::path::{Path, PathBuf};
@@ -8,9 +8,10 @@ use std::time::Instant;
 use sunbake::atlas::{self, AtlasError, AtlasSettings, Density, SurfacePoint};
 use sunbake::scene::{LoadLimits, load};
 use sunbake::sun::SunPath;
+use sunbake::visibility::lit_at;
 use sunbake_tests::engines::{EXACT, FINDS_ALL};
 use sunbake_tests::paths::{Random, day_at, keyed};
-use sunbake_tests::{Agreement, Oracle, Traced, cases, shared_scene};
+use sunbake_tests::{Agreement, Oracle, Traced, asked_for, shared_scene};
 
 const SUNS: usize = 65_536;
 
@@ -58,8 +59,9 @@ fn compare(here: &Traced, count: usize) -> Agreement {
     let mut all = Agreement::default();
     for (path, points) in paths().iter().zip(points.chunks(count.div_ceil(3))) {
         let truth = Oracle::new(here, path, SUNS).lit_all(points);
+        let engine = (EXACT.make)(&here.tracer, std::slice::from_ref(path));
         for (point, truth) in points.iter().zip(&truth) {
-            all.add(&Agreement::of(&EXACT.lit(here, path, point), truth));
+            all.add(&Agreement::of(&lit_at(engine.as_ref(), point)[0], truth));
         }
     }
     all
@@ -86,7 +88,7 @@ fn row(file: &Path, count: usize) -> Agreement {
 
 #[test]
 fn random_texels_of_real_scenes_agree_with_brute_force() {
-    let count = cases(9);
+    let count = asked_for("SUNBAKE_TEXELS", 9);
     println!("                          texels   k suns   edges  beside an edge  elsewhere  missed     time");
     let own = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
     let mut all = Agreement::default();

@@ -1,4 +1,5 @@
-//! Hard cases B1, B5, B6, B8 and B10 at the level of single points: what a ray may and may not see.
+//! Hard cases B1, B5, B6, B8 and B10 at the level of single points: what a shadow ray may and may not see, by rays and by
+//! the exact engine.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Material;
@@ -21,20 +22,22 @@ fn no_sun_at_or_below_the_horizon_lights_anything() {
         for (elevation_deg, expected) in [(-0.01f64, 0.0), (0.01, 1.0), (-90.0, 0.0), (90.0, 1.0)] {
             let (up, level) = elevation_deg.to_radians().sin_cos();
             let path = standing(DVec3::new(cos * level, up, sin * level));
-            let lit = here.lit_by_rays(&path, 16, &point);
-            assert_eq!(lit.lit_length(), expected, "azimuth {azimuth_deg}, elevation {elevation_deg}");
+            for (lit, _) in here.lit_by_both(&path, 16, &point) {
+                let off = (lit.lit_length() - expected).abs();
+                assert!(off <= 1e-12, "azimuth {azimuth_deg}, elevation {elevation_deg}: {lit:?}");
+            }
         }
     }
     for axis in [DVec3::X, -DVec3::X, DVec3::Z, -DVec3::Z, -DVec3::Y] {
-        let length = here.lit_by_rays(&standing(axis), 16, &point).lit_length();
-        assert!(length.is_finite() && length < 1.0, "{axis} lights the floor for {length}");
+        for (lit, _) in here.lit_by_both(&standing(axis), 16, &point) {
+            assert!(lit.lit_length() < 1.0, "{axis} lights the floor for {}", lit.lit_length());
+        }
     }
 }
 
 /// B6: the floor behind a wall is lit just from when the sun stands above the wall's top, at any distance from its foot.
 #[test]
 fn light_does_not_leak_under_a_wall_at_any_distance_or_height() {
-    const STEPS: usize = 4096;
     let (height, thickness) = (2.0, 0.2);
     let wall = block(Vec3::new(-thickness, 0.0, -10.0), Vec3::new(0.0, height, 10.0));
     let sheet: Vec<_> = floor(Vec2::new(0.0, -10.0), Vec2::new(height, 10.0), 0.0)
@@ -48,16 +51,15 @@ fn light_does_not_leak_under_a_wall_at_any_distance_or_height() {
         for exponent in 0..12 {
             let distance_m = 4.0 * 0.3f64.powi(exponent);
             for z in [-3.1, 0.0, 0.7] {
-                let lit = here.lit_by_rays(&path, STEPS, &here.point_at(DVec3::new(distance_m, 0.0, z), FLOOR));
-                let near_top = f64::from(height).atan2(distance_m);
-                let far_top = f64::from(height).atan2(distance_m - top_x);
-                let expected = near_top.max(far_top) / std::f64::consts::PI;
-                let [start, end] = *lit.as_slice().first().expect("the afternoon is sunny");
-                assert!(lit.as_slice().len() == 1 && end == 1.0);
-                assert!(
-                    (start - expected).abs() <= 1.0 / STEPS as f64,
-                    "{name}, {distance_m} m: {start}, not {expected}"
-                );
+                let point = here.point_at(DVec3::new(distance_m, 0.0, z), FLOOR);
+                let from = here.start(&point);
+                let rise_m = f64::from(height) - from.y;
+                let expected = rise_m.atan2(from.x).max(rise_m.atan2(from.x - top_x)) / std::f64::consts::PI;
+                for (lit, off_t) in here.lit_by_both(&path, 4096, &point) {
+                    let [start, end] = *lit.as_slice().first().expect("the afternoon is sunny");
+                    assert!(lit.as_slice().len() == 1 && end == 1.0);
+                    assert!((start - expected).abs() <= off_t, "{name}, {distance_m} m: {start}, not {expected}");
+                }
             }
         }
     }
@@ -72,8 +74,9 @@ fn a_closed_room_is_dark_in_its_corners() {
     for triangle in 0..inside.len() {
         for near in [1e-1, 1e-3, 1e-5, 1e-7, 0.0] {
             for barycentric in [[near, near], [1.0 - 2.0 * near, near], [near, 1.0 - 2.0 * near], [0.5, 0.5 - near]] {
-                let lit = here.lit_by_rays(&path, 256, &here.point(triangle, barycentric));
-                assert_eq!(lit.lit_length(), 0.0, "triangle {triangle} at {barycentric:?}");
+                for (lit, _) in here.lit_by_both(&path, 256, &here.point(triangle, barycentric)) {
+                    assert_eq!(lit.lit_length(), 0.0, "triangle {triangle} at {barycentric:?}");
+                }
             }
         }
     }
@@ -88,10 +91,10 @@ fn coincident_faces_do_not_speckle() {
     let alone = scene(&[]);
     for (name, extra) in [("same winding", a_floor()), ("opposite winding", flipped(&a_floor()))] {
         let doubled = scene(&extra);
-        for i in 0..4000 {
-            let (u, v) = (f64::from(i % 63) / 63.0, f64::from(i / 63) / 64.0);
+        for i in 0..1000 {
+            let (u, v) = (f64::from(i % 31) / 31.0, f64::from(i / 31) / 33.0);
             let barycentric = [u * (1.0 - v), v];
-            let [expected, found] = [&alone, &doubled].map(|s| s.lit_by_rays(&path, 128, &s.point(FLOOR, barycentric)));
+            let [expected, found] = [&alone, &doubled].map(|s| s.lit_by_both(&path, 128, &s.point(FLOOR, barycentric)));
             assert_eq!(found, expected, "{name} at {barycentric:?}");
         }
     }
@@ -105,26 +108,35 @@ fn the_ground_under_a_slab_is_dark_up_to_its_edge() {
         let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&slab).build());
         let path = over_the_top(DVec3::X);
         for x in [0.0, 0.5, 0.9, 0.999, 0.99999] {
-            let lit = here.lit_by_rays(&path, 256, &here.point_at(DVec3::new(x, 0.0, 0.3), FLOOR));
-            assert_eq!(lit.lit_length(), 0.0, "{x} m from the middle under {thickness_m} m");
+            for (lit, _) in here.lit_by_both(&path, 256, &here.point_at(DVec3::new(x, 0.0, 0.3), FLOOR)) {
+                assert_eq!(lit.lit_length(), 0.0, "{x} m from the middle under {thickness_m} m");
+            }
         }
-        let beside = here.lit_by_rays(&path, 256, &here.point_at(DVec3::new(1.0 + 1.0, 0.0, 0.3), FLOOR));
-        assert!(beside.lit_length() > 0.8);
+        for (beside, _) in here.lit_by_both(&path, 256, &here.point_at(DVec3::new(1.0 + 1.0, 0.0, 0.3), FLOOR)) {
+            assert!(beside.lit_length() > 0.8);
+        }
     }
 }
 
-/// B5: a face lying on the ground, a millimetre or a tenth of one above it, hides it up to its edge. At no distance at
-/// all neither of the two is on top, and both keep their light, without speckle.
+/// B5: a face lying on the ground, a millimetre or a tenth of one above it, hides it but for the sun that shines in under
+/// the gap. At no distance at all neither of the two is on top, and both keep their light, without speckle.
 #[test]
 fn a_face_lying_on_the_ground_hides_it_up_to_its_edge() {
     let path = over_the_top(DVec3::X);
-    for (gap_m, expected) in [(1e-3f32, 0.0), (1e-4, 0.0), (0.0, 1.0)] {
+    for gap_m in [1e-3f32, 1e-4, 0.0] {
         let face = floor(Vec2::splat(-1.0), Vec2::splat(1.0), gap_m);
         let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&face).build());
         // Within a tenth of a metre of the edge, the lowest of the 64 suns does shine in under the gap.
         for x in [-0.9, -0.5, 0.0, 0.31, 0.9] {
-            let lit = here.lit_by_rays(&path, 64, &here.point_at(DVec3::new(x, 0.0, 0.3), FLOOR));
-            assert_eq!(lit.lit_length(), expected, "{x} m from the middle under {gap_m} m");
+            let point = here.point_at(DVec3::new(x, 0.0, 0.3), FLOOR);
+            let from = here.start(&point);
+            let under = |edge_m: f64| (f64::from(gap_m) - from.y).atan2(edge_m) / std::f64::consts::PI;
+            let shines_in = under(1.0 - from.x) + under(1.0 + from.x);
+            let expected = if gap_m > 0.0 { [0.0, shines_in] } else { [1.0; 2] };
+            for ((lit, _), expected) in here.lit_by_both(&path, 64, &point).iter().zip(expected) {
+                let off = (lit.lit_length() - expected).abs();
+                assert!(off <= 1e-7, "{x} m from the middle under {gap_m} m: {lit:?}, not {expected}");
+            }
         }
     }
 }
@@ -136,15 +148,15 @@ fn a_single_sided_quad_casts_from_both_sides() {
         [floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0), flipped(&floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0))]
     {
         let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&roof).build());
-        let lit = here.lit_by_rays(&standing(DVec3::Y), 4, &here.point_at(DVec3::new(0.3, 0.0, 0.2), FLOOR));
-        assert_eq!(lit.lit_length(), 0.0);
+        for (lit, _) in here.lit_by_both(&standing(DVec3::Y), 4, &here.point_at(DVec3::new(0.3, 0.0, 0.2), FLOOR)) {
+            assert_eq!(lit.lit_length(), 0.0);
+        }
     }
 }
 
 /// B8: an open box is no solid: light falls in through the missing lid and nowhere else.
 #[test]
 fn an_open_box_lets_light_in_by_its_lid_only() {
-    const STEPS: usize = 4096;
     let without_lid: Vec<_> = block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0))
         .into_iter()
         .filter(|t| t.iter().any(|v| v.y < 1.0))
@@ -152,11 +164,14 @@ fn an_open_box_lets_light_in_by_its_lid_only() {
     assert_eq!(without_lid.len(), 10);
     let here = Traced::new(SceneBuilder::new().soup(&a_floor()).soup(&flipped(&without_lid)).build());
     let bottom = 2 + without_lid.iter().position(|t| t.iter().all(|v| v.y == 0.0)).expect("a box has a bottom");
-    let lit = here.lit_by_rays(&over_the_top(DVec3::X), STEPS, &here.point_at(DVec3::ZERO, bottom));
-    let opening = 2f64.atan2(1.0) / std::f64::consts::PI;
-    let [start, end] = lit.as_slice()[0];
-    assert_eq!(lit.as_slice().len(), 1);
-    assert!((start - opening).abs() <= 1.0 / STEPS as f64 && (end - (1.0 - opening)).abs() <= 1.0 / STEPS as f64);
+    let point = here.point_at(DVec3::ZERO, bottom);
+    let from = here.start(&point);
+    let opening = |edge_m: f64| (2.0 - from.y).atan2(edge_m) / std::f64::consts::PI;
+    for (lit, off_t) in here.lit_by_both(&over_the_top(DVec3::X), 4096, &point) {
+        let expected = [opening(1.0 - from.x), 1.0 - opening(1.0 + from.x)];
+        assert_eq!(lit.as_slice().len(), 1);
+        assert!((0..2).all(|i| (lit.as_slice()[0][i] - expected[i]).abs() <= off_t), "{lit:?}, not {expected:?}");
+    }
 }
 
 /// B8: on a convex solid nothing shades anything: each facet is lit while the sun is before its plane.
@@ -169,8 +184,9 @@ fn a_sphere_of_80_facets_has_a_clean_terminator() {
     for triangle in 0..sphere.len() {
         for barycentric in [[0.01, 0.01], [0.98, 0.01], [0.01, 0.98], [1.0 / 3.0, 1.0 / 3.0], [0.5, 0.0], [0.0, 0.5]] {
             let point = here.point(triangle, barycentric);
-            let lit = here.lit_by_rays(&path, STEPS, &point);
-            for step in 0..STEPS {
+            for ((lit, _), step) in
+                here.lit_by_both(&path, STEPS, &point).iter().flat_map(|lit| (0..STEPS).map(move |step| (lit, step)))
+            {
                 let t = (step as f64 + 0.5) / STEPS as f64;
                 let sun = path.direction(t);
                 assert_eq!(lit.contains(t), sun.dot(point.normal) > 0.0 && sun.y > 0.0, "facet {triangle} at {t}");
@@ -195,9 +211,10 @@ fn buried_points_and_points_on_shared_edges_are_dark() {
         for barycentric in [[0.0, 0.0], [0.5, 0.0], [0.5, 0.5], [0.3, 0.3], [1.0, 0.0]] {
             let point = here.point(triangle, barycentric);
             let on_top = (point.position_m.y + here.scene.centre_m.y - 1.0).abs() < 1e-9;
-            let lit = here.lit_by_rays(&path, 128, &point);
-            assert!(on_top || lit.lit_length() == 0.0, "triangle {triangle} at {barycentric:?}: {lit:?}");
-            assert!(lit.lit_length().is_finite());
+            for (lit, _) in here.lit_by_both(&path, 128, &point) {
+                assert!(on_top || lit.lit_length() == 0.0, "triangle {triangle} at {barycentric:?}: {lit:?}");
+                assert!(lit.lit_length().is_finite());
+            }
         }
     }
 }
@@ -207,10 +224,10 @@ fn buried_points_and_points_on_shared_edges_are_dark() {
 fn a_double_sided_sheet_is_lit_from_either_side() {
     let wall: Vec<_> = a_floor().iter().map(|t| t.map(|v| Vec3::new(0.0, v.x, v.z))).collect();
     let path = over_the_top(DVec3::X);
-    let lit_length = |material: Material| {
+    for (material, expected) in [(opaque(), 0.5), (Material { is_double_sided: true, ..opaque() }, 1.0)] {
         let here = Traced::new(SceneBuilder::new().soup_of(&wall, material).build());
-        here.lit_by_rays(&path, 128, &here.point(0, [0.3, 0.3])).lit_length()
-    };
-    assert_eq!(lit_length(opaque()), 0.5);
-    assert_eq!(lit_length(Material { is_double_sided: true, ..opaque() }), 1.0);
+        for (lit, _) in here.lit_by_both(&path, 128, &here.point(0, [0.3, 0.3])) {
+            assert!((lit.lit_length() - expected).abs() <= 1e-9, "{lit:?}");
+        }
+    }
 }
