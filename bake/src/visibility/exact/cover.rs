@@ -12,9 +12,6 @@ use fearless_simd::Simd;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// Most lanes across a disc.
-pub(super) const MOST_LANES: usize = 8;
-
 /// A point, one of its sides, and what of the arc is still lit there.
 #[derive(Debug, Clone)]
 pub(super) struct Query {
@@ -41,7 +38,7 @@ pub(super) struct Coverer<'a> {
     /// What is of use at this point.
     next_seeds: [Seeds; 2],
     /// Room for one answer a lane.
-    hidden: [Hidden; MOST_LANES],
+    hidden: Vec<Hidden>,
 }
 
 impl<'a> Coverer<'a> {
@@ -51,7 +48,7 @@ impl<'a> Coverer<'a> {
             frame,
             seeds: Default::default(),
             next_seeds: Default::default(),
-            hidden: [Hidden::default(); MOST_LANES],
+            hidden: vec![Hidden::default(); frame.lanes.len()],
         }
     }
 
@@ -83,15 +80,7 @@ impl<'a> Coverer<'a> {
         let Packet { corners, ids, count } = packet;
         let lanes = self.frame.lanes.len();
         let run_up = self.tracer.run_up();
-        let near = hide(
-            simd,
-            corners,
-            query.origin,
-            run_up * run_up,
-            &self.frame.lanes,
-            &query.gaps,
-            &mut self.hidden[..lanes],
-        );
+        let near = hide(simd, corners, query.origin, run_up * run_up, &self.frame.lanes, &query.gaps, &mut self.hidden);
         let real = (1u32 << *count) - 1;
         let mut useful = 0;
         for lane in 0..lanes {

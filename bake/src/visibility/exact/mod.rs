@@ -175,3 +175,42 @@ impl ExactSession<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Geometry;
+    use crate::testing::{SceneBuilder, block, floor, icosphere};
+    use glam::{Vec2, Vec3};
+
+    /// A floor under a stone and a post, looked at along three lanes of two arcs.
+    fn answers(level: impl Fn() -> Level) -> IntervalTable {
+        let stone: Vec<[Vec3; 3]> = icosphere(3).iter().map(|t| t.map(|v| v + Vec3::Y * 0.6)).collect();
+        let post = block(Vec3::new(1.2, 0.0, -0.1), Vec3::new(1.3, 3.0, 0.0));
+        let scene =
+            SceneBuilder::new().soup(&floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0)).soup(&stone).soup(&post).build();
+        let geometry = Geometry::new(&scene);
+        let tracer = Tracer::new(&scene, &geometry);
+        let keys = r#"{ "keys": [{ "direction": [1, 0.1, 0.2] }, { "direction": [0, 1, 0.5] }, { "direction": [-1, 0.1, 0] }] }"#;
+        let path = crate::sun::parse_keyed(keys, 0.0).expect("a path");
+        let lanes = [-0.01, 0.0, 0.01].map(|offset_rad| path.lane(offset_rad));
+        let engine = ExactEngine { level: level(), ..ExactEngine::new(&tracer, &lanes) };
+        let point = |i: usize| SurfacePoint {
+            position_m: geometry.point(0, [0.02 * (i % 20) as f64, 0.02 * (i / 20) as f64]),
+            normal: geometry.normal(0),
+            is_double_sided: true,
+            triangle: 0,
+        };
+        let points: Vec<SurfacePoint> = (0..400).map(point).collect();
+        let mut answers = IntervalTable::default();
+        engine.session().lit(&points, &mut answers);
+        answers
+    }
+
+    #[test]
+    fn wider_simd_changes_no_bit() {
+        let widest = answers(Level::new);
+        assert!(widest.iter().any(|lit| lit.as_slice().len() > 1), "nothing casts a shadow");
+        assert_eq!(answers(Level::baseline), widest);
+    }
+}
