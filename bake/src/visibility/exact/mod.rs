@@ -80,8 +80,10 @@ impl<'a> ExactEngine<'a> {
     pub fn new(tracer: &'a Tracer, lanes: &[SunPath]) -> Self {
         let frames = ArcFrame::of_path(lanes);
         let axes = frames.first().map_or(DMat3::IDENTITY, |frame| frame.arc_from_bake);
-        let wide = Wide::new(tracer, axes, BOX_PADDING);
-        let arc = |frame| Arc { frames: Frames::new(&frame, axes, BOX_PADDING), frame };
+        // Rays start a run-up behind their point, which may be far where a file's coordinates are coarse.
+        let padding = BOX_PADDING + tracer.run_up() as f32;
+        let wide = Wide::new(tracer, axes, padding);
+        let arc = |frame| Arc { frames: Frames::new(&frame, axes, padding), frame };
         let arcs = frames.into_iter().map(arc).collect();
         Self { tracer, wide, arcs, lane_count: lanes.len(), level: Level::new() }
     }
