@@ -69,7 +69,7 @@ pub fn parse_lamp(json: &str) -> Result<LampPath, KeyedError> {
 fn lamp_key(index: usize, key: &Key, t: f64) -> Result<LampKey, KeyedError> {
     let wrong = |problem: &str| KeyedError::Key { index, problem: problem.to_owned() };
     if key.direction.is_some() || key.azimuth_deg.is_some() || key.elevation_deg.is_some() {
-        return Err(wrong("has a direction, and other keys have positions: give every key a 'position', or none"));
+        return Err(wrong("has a direction, which a lamp has not: give every key a 'position'"));
     }
     let position = key.position.ok_or_else(|| wrong("has no 'position': give metres of the scene, as [0, 2, 0]"))?;
     Ok(LampKey { t, position_m: DVec3::from_array(position) })
