@@ -126,8 +126,8 @@ fn unexplained(seen: &[bool], answer: &Intervals) -> Vec<usize> {
     let step_t = 1.0 / STEPS as f64;
     let t = |step: usize| (step as f64 + 0.5) * step_t;
     let is_at_edge = |step: usize| {
-        let around = step.saturating_sub(1)..=(step + 1).min(STEPS - 1);
-        let changes = around.clone().any(|other| seen[other] != seen[step]);
+        let mut around = step.saturating_sub(1)..=(step + 1).min(STEPS - 1);
+        let changes = around.any(|other| seen[other] != seen[step]);
         // A spell that falls between two steps, told by the engine alone, must begin or end beside the step it touches.
         changes || answer.as_slice().iter().flatten().any(|edge| (edge - t(step)).abs() <= 1e-9)
     };
@@ -138,7 +138,8 @@ fn unexplained(seen: &[bool], answer: &Intervals) -> Vec<usize> {
 /// a path that is its own mirror image may touch a surface.
 fn moments(answer: &Intervals) -> Vec<f64> {
     let mut ends: Vec<f64> = answer.as_slice().iter().flatten().copied().collect();
-    (ends.insert(0, 0.0), ends.push(1.0));
+    ends.insert(0, 0.0);
+    ends.push(1.0);
     ends.windows(2)
         .filter(|spell| spell[1] - spell[0] > 1e-9)
         .map(|spell| spell[0] + 0.45 * (spell[1] - spell[0]))
@@ -164,7 +165,7 @@ fn agree(name: &str, here: &Here, lamp: &LampPath, points: &[SurfacePoint]) -> V
         let wrong = unexplained(&seen, &rays);
         assert!(wrong.is_empty(), "{name}, {point:?}: rays {rays:?} at steps {wrong:?}");
         // What a session learned from other points must not matter.
-        assert_eq!(lit_at(&exact, point), [answer.clone()], "{name}");
+        assert_eq!(lit_at(&exact, point), std::slice::from_ref(answer), "{name}");
     }
     answers
 }

@@ -207,14 +207,15 @@ fn check_positions(keys: &[LampKey]) -> Result<(), LampError> {
 
 fn check_times(keys: &[LampKey]) -> Result<(), LampError> {
     let last = keys.len() - 1;
-    let off_end = |index: usize, t: f64| !((keys[index].t - t).abs() <= END_TOLERANCE_T);
-    let descends = |pair: &[LampKey]| !(pair[1].t - pair[0].t > END_TOLERANCE_T);
-    let wrong = if off_end(0, 0.0) {
+    // Ranges, so that a NaN lies outside of them.
+    let is_at = |index: usize, t: f64| (t - END_TOLERANCE_T..=t + END_TOLERANCE_T).contains(&keys[index].t);
+    let ascends = |pair: &[LampKey]| (END_TOLERANCE_T..=2.0).contains(&(pair[1].t - pair[0].t));
+    let wrong = if !is_at(0, 0.0) {
         Some(0)
-    } else if off_end(last, 1.0) {
+    } else if !is_at(last, 1.0) {
         Some(last)
     } else {
-        keys.windows(2).position(descends).map(|index| index + 1)
+        keys.windows(2).position(|pair| !ascends(pair)).map(|index| index + 1)
     };
     wrong.map_or(Ok(()), |index| Err(LampError::Times { index }))
 }
