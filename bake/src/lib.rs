@@ -6,7 +6,7 @@
 //! ```text
 //! scene -> atlas -> visibility -> maps -> disk
 //!             ^         ^
-//!            sun      trace
+//!         sun, lamp   trace
 //! ```
 
 pub mod atlas;
@@ -14,6 +14,7 @@ mod bake;
 pub mod disk;
 pub mod glb;
 pub mod heat;
+pub mod lamp;
 mod loss;
 pub mod loss_map;
 pub mod maps;

@@ -27,11 +27,12 @@ impl LossMap {
         Self { width, height, minutes: vec![UNCOVERED; width as usize * height as usize] }
     }
 
-    /// Sets what a texel lost, on a path of this many minutes.
-    pub fn set(&mut self, texel: usize, loss: &EncodeLoss, duration_min: f64) {
+    /// Adds what a texel lost of a light, on a path of this many minutes.
+    pub fn add(&mut self, texel: usize, loss: &EncodeLoss, duration_min: f64) {
         // By way of f32, as the tally in the manifest goes, so that both hold the same numbers.
         let minutes = |t: f64| (f64::from(t as f32) * duration_min) as f32;
-        self.minutes[texel] = [minutes(loss.cap.total_t()), minutes(loss.quantised_t)];
+        let [layers, bits] = self.minutes[texel].map(|before| if before.is_nan() { 0.0 } else { before });
+        self.minutes[texel] = [layers + minutes(loss.cap.total_t()), bits + minutes(loss.quantised_t)];
     }
 
     /// Minutes lost for want of layers, in row order; 0 where there is no surface.
@@ -94,8 +95,8 @@ mod tests {
         let lit = Intervals::from_unsorted(lit.iter().map(|ends| ends.map(|minute| minute / 800.0)).collect());
         let mut map = LossMap::new(3, 1);
         let mut encoder = PageEncoder::new(3, Bits::Sixteen, 1);
-        map.set(0, &encoder.set(0, &lit), 800.0);
-        map.set(1, &encoder.set(1, &Intervals::always()), 800.0);
+        map.add(0, &encoder.set(0, &lit), 800.0);
+        map.add(1, &encoder.set(1, &Intervals::always()), 800.0);
         assert!((map.by_layers_min()[0] - 20.0).abs() < 1e-5);
         // Eight edges move by half a code at most, of 800/65535 minutes each.
         let rounding = map.by_bits_min()[0];

@@ -4,6 +4,7 @@
 //! ray, no texture, no loop.
 
 use crate::disk::manifest::EffectEntry;
+use crate::lamp::LampPath;
 use crate::scene::{Alpha, Scene};
 use crate::sun::SunPath;
 
@@ -12,6 +13,8 @@ use crate::sun::SunPath;
 pub enum Effect {
     /// Times at which texels see the sun.
     SunIntervals,
+    /// Times at which texels see a lamp that moves through the scene.
+    LampIntervals,
     /// A sun of some width: edges soften as it crosses them.
     Penumbra,
     /// Several paths across the sun's disc.
@@ -29,6 +32,7 @@ impl Effect {
     pub fn name(self) -> &'static str {
         match self {
             Self::SunIntervals => "sun-intervals",
+            Self::LampIntervals => "lamp-intervals",
             Self::Penumbra => "penumbra",
             Self::DiscLanes => "disc-lanes",
             Self::AlphaCut => "alpha-cut",
@@ -57,8 +61,14 @@ pub struct EffectPlan {
 }
 
 impl EffectPlan {
-    /// Decides from the scene, the path and the number of lanes asked for; `no_sun` says why there is no path.
-    pub fn new(scene: &Scene, path: Option<&SunPath>, lane_count: usize, no_sun: &str) -> Self {
+    /// Decides from the scene, the paths and the number of lanes asked for; `no_sun` says why there is no sun's path.
+    pub fn new(
+        scene: &Scene,
+        path: Option<&SunPath>,
+        lamp: Option<&LampPath>,
+        lane_count: usize,
+        no_sun: &str,
+    ) -> Self {
         let decide = |effect, is_on, why: String| Decision { effect, is_on, why };
         let radius_deg = path.map_or(0.0, |p| p.angular_radius_rad.to_degrees());
         let cut = count(scene, |m| matches!(m.alpha, Alpha::Cut { .. }));
@@ -67,6 +77,7 @@ impl EffectPlan {
         Self {
             decisions: vec![
                 decide(Effect::SunIntervals, path.is_some(), sun),
+                decide(Effect::LampIntervals, lamp.is_some(), lamp_reason(lamp)),
                 decide(Effect::Penumbra, radius_deg > 0.0, format!("the light's radius is {radius_deg:.3} degrees")),
                 decide(Effect::DiscLanes, path.is_some() && has_lanes(radius_deg, lane_count), lanes(path, lane_count)),
                 decide(Effect::AlphaCut, cut > 0, format!("{cut} drawn surfaces have holes cut by alpha")),
@@ -95,6 +106,13 @@ impl EffectPlan {
         let entry = |d: &Decision| EffectEntry { effect: d.effect.name().into(), on: d.is_on, why: d.why.clone() };
         self.decisions.iter().map(entry).collect()
     }
+}
+
+/// Why there is a lamp, or is none.
+fn lamp_reason(lamp: Option<&LampPath>) -> String {
+    lamp.map_or("no lamp is asked for; --lamp bakes one beside the sun".into(), |lamp| {
+        format!("a lamp moves along {} straight segment(s)", lamp.segments().count())
+    })
 }
 
 fn has_lanes(radius_deg: f64, lane_count: usize) -> bool {

@@ -9,8 +9,10 @@ pub enum Stage {
     Unwrap,
     /// Building the hierarchy. Counts nothing.
     Bvh,
-    /// Finding lit intervals. Counts texels.
+    /// Finding when the sun is seen. Counts texels.
     Visibility,
+    /// Finding when the lamp is seen. Counts texels.
+    Lamp,
     /// Turning them into codes. Counts texels.
     Encode,
     /// Writing files. Counts nothing.
@@ -25,6 +27,7 @@ impl Stage {
             Self::Unwrap => "unwrapping",
             Self::Bvh => "building the hierarchy",
             Self::Visibility => "tracing the sun",
+            Self::Lamp => "tracing the lamp",
             Self::Encode => "encoding",
             Self::Write => "writing",
         }

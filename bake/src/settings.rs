@@ -1,16 +1,19 @@
 //! What a bake is asked for. Presets fill every field; a flag overrides one.
 
 use crate::atlas::Density;
+use crate::lamp::LampPath;
 use crate::maps::Bits;
 use crate::sun::{DayRequest, SunPath};
 use crate::trace::Tracer;
-use crate::visibility::{BisectEngine, Engine, ExactEngine, RayEngine};
+use crate::visibility::{BisectEngine, Engine, ExactEngine, LampEngine, LampRays, RayEngine};
 
 /// Everything that decides what a bake makes, and what it may cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeSettings {
     /// Which sun.
     pub sun: SunRequest,
+    /// A lamp beside the sun: the text of its path file, see [`crate::lamp::parse_lamp`]. Takes a light's time and bytes.
+    pub lamp: Option<String>,
     /// Names of materials that are neither drawn nor baked and cast nothing: outline hulls, sky domes. Usually none.
     pub leave_out: Vec<String>,
     /// How many texels. Time and bytes grow with their number, so with the square of the density.
@@ -47,9 +50,9 @@ pub struct BakeSettings {
 pub enum SunRequest {
     /// A day at a place.
     Day(DayRequest),
-    /// Keyed directions: the text of a path file.
+    /// Keyed directions, or, of a lamp to be baked instead of a sun, positions: the text of a path file.
     Keyed {
-        /// JSON; see [`crate::sun::parse_keyed`].
+        /// JSON; see [`crate::sun::parse_keyed`] and [`crate::lamp::parse_lamp`].
         json: String,
         /// Degrees that the scene's north is turned from -Z towards +X.
         north_deg: f64,
@@ -76,6 +79,20 @@ impl EngineChoice {
     /// Whether it searches for edges, and so heeds [`BakeSettings::edge_seconds`].
     pub fn searches(self) -> bool {
         matches!(self, Self::Bisect(_))
+    }
+
+    /// The engine for a lamp's path, bake space; none where it does not find lamps.
+    pub fn lamp_engine<'a>(self, tracer: &'a Tracer, path: &LampPath) -> Option<Box<dyn Engine + 'a>> {
+        match self {
+            Self::Exact => Some(Box::new(LampEngine::new(tracer, path))),
+            Self::Rays(count) => Some(Box::new(LampRays::new(tracer, path, count))),
+            Self::Bisect(_) => None,
+        }
+    }
+
+    /// Whether it finds when texels see a lamp.
+    pub fn finds_lamps(self) -> bool {
+        !matches!(self, Self::Bisect(_))
     }
 
     /// The engine, for the lanes of a sun.
@@ -115,6 +132,7 @@ impl BakeSettings {
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
+            lamp: None,
             leave_out: Vec::new(),
             density: Density::Pages(1),
             page_size_texels: 2048,

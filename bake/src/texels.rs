@@ -35,6 +35,9 @@ pub struct Texel {
     /// Every lane's times, where a set has several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lanes: Vec<TexelLane>,
+    /// When the texel sees the lamp, as stored, if the set has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lamp: Option<Vec<[f64; 2]>>,
     /// Ambient occlusion as stored, 0 is occluded, if the set has it.
     pub ao: Option<f64>,
 }
@@ -91,6 +94,7 @@ fn describe(
         origin_back: point.is_double_sided.then(|| origin(-point.normal)),
         lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
         lanes: if lanes.len() > 1 { lanes } else { Vec::new() },
+        lamp: maps.lamp.as_ref().map(|layers| stored_intervals(layers, sample.texel as usize, set.bits)),
         ao: maps.ao.as_ref().map(|ao| f64::from(ao[sample.texel as usize]) / 65_535.0),
     }
 }

@@ -87,7 +87,7 @@ fn draw(sets: &[Set; 2], view: &View, t: f64) -> Result<Column, Anything> {
         beyond[0],
         beyond[1]
     );
-    let lit = [0, 1].map(|i| displayed(&lit_picture(&shots[i], &moment, &seen[i])));
+    let lit = [0, 1].map(|i| displayed(&lit_picture(&shots[i], &moment, &seen[i], None)));
     let [first, other] = lit;
     Ok(Column { clock, pictures: [first, other, heat_map(&difference.reduced(SUPERSAMPLE))], errors })
 }

@@ -1,7 +1,7 @@
-//! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl` and
-//! `openness_baked.wgsl`, around [`sunbake::maps::soft_visibility`].
+//! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl`,
+//! `lamp_baked.wgsl` and `openness_baked.wgsl`, around [`sunbake::maps::soft_visibility`].
 
-use crate::light::Moment;
+use crate::light::{LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
 use sunbake::maps::{Bits, PageMaps, soft_visibility};
 use sunbake_shaders::{Filter, LaneVariant, PageVariant};
@@ -13,7 +13,13 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
         weight: lane.lane.weight as f32,
         chord: lane.lane.chord(radius_rad) as f32,
     };
-    PageVariant { max_code: bits.max_code(), lanes: page.lanes.iter().map(lane).collect(), has_ao: page.ao.is_some() }
+    let lamp_layer_count = page.lamp.as_ref().map_or(0, |layers| layers.len() as u32);
+    PageVariant {
+        max_code: bits.max_code(),
+        lanes: page.lanes.iter().map(lane).collect(),
+        lamp_layer_count,
+        has_ao: page.ao.is_some(),
+    }
 }
 
 /// A page ready to be evaluated.
@@ -61,6 +67,25 @@ impl<'a> Page<'a> {
             return 0.0;
         }
         disc_share.min(self.page_visibility(page_uv, filter, moment))
+    }
+
+    /// The lamp as the maps tell it, no more than the share of its ball that stands before the surface's plane; `way_m`
+    /// leads to it. Twin of `lamp_baked.wgsl`.
+    pub fn lamp_visibility(&self, page_uv: Vec2, face: Vec3, way_m: Vec3, filter: Filter, lamp: &LampMoment) -> f32 {
+        let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
+        let ball_share = (0.5 + face.dot(way_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
+        if ball_share <= 0.0 {
+            return 0.0;
+        }
+        let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
+        let seen = |texel: IVec2| {
+            let index = texel.y as usize * self.maps.width as usize + texel.x as usize;
+            soft_visibility(layers, index, self.bits, lamp.t, lamp.width_t)
+        };
+        ball_share.min(match filter {
+            Filter::Nearest => seen((page_uv * (last + 1).as_vec2()).floor().as_ivec2().clamp(IVec2::ZERO, last)),
+            Filter::Bilinear => bilinear(page_uv, last, seen),
+        })
     }
 
     /// How much of the sky is seen; all of it where there is no ambient occlusion map.

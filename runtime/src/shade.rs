@@ -11,18 +11,33 @@ use sunbake::scene::Material;
 use sunbake::scene::alpha::blend;
 use sunbake::trace::Hit;
 
-/// Linear light of every pixel, given how much of the sun each sees.
-pub fn lit_picture(shot: &Shot, moment: &Moment, visibility: &Raster<f32>) -> Raster<Vec3> {
+/// Linear light of every pixel, given how much of the sun each sees, and of the lamp, if there is one.
+pub fn lit_picture(
+    shot: &Shot,
+    moment: &Moment,
+    visibility: &Raster<f32>,
+    lamp_visibility: Option<&Raster<f32>>,
+) -> Raster<Vec3> {
+    let seen = |pixel: usize| Seen {
+        sun: visibility.pixels[pixel],
+        lamp: lamp_visibility.map_or(0.0, |visibility| visibility.pixels[pixel]),
+    };
     let pages: Vec<Page> = shot.stage.pages.iter().map(|maps| Page::new(maps, shot.stage.bits, 0.0)).collect();
     let light = |(pixel, hit): (usize, &Option<Hit>)| match hit {
         None => moment.sky_color(shot.ray(pixel).normalize()),
-        Some(hit) => lit_surface(shot, moment, &pages, pixel, hit, visibility.pixels[pixel]),
+        Some(hit) => lit_surface(shot, moment, &pages, pixel, hit, &seen(pixel)),
     };
     let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(light).collect();
     Raster { size: shot.view.size, pixels }
 }
 
-fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: &Hit, visibility: f32) -> Vec3 {
+/// How much a pixel's surface sees of each light.
+struct Seen {
+    sun: f32,
+    lamp: f32,
+}
+
+fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: &Hit, seen: &Seen) -> Vec3 {
     let stage = shot.stage;
     let triangle = hit.triangle as usize;
     let ray = shot.ray(pixel);
@@ -37,7 +52,12 @@ fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: 
         Some(chart) => pages[chart.page as usize].openness(blend(corners.page_uv, weights)),
         None => 1.0,
     };
-    shade(material, base_color.xyz(), normal, moment, visibility, open)
+    let light = shade(material, base_color.xyz(), normal, moment, seen.sun, open);
+    let of_lamp = moment.lamp.filter(|_| !material.is_unlit).map(|lamp| {
+        let way_m = lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3();
+        lamp.on(base_color.xyz(), normal, way_m, seen.lamp)
+    });
+    light + of_lamp.unwrap_or(Vec3::ZERO)
 }
 
 /// A normal turned to the side that the eye is on.

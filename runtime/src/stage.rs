@@ -1,5 +1,6 @@
 //! A baked set and its scene, joined: what every technique draws.
 
+use crate::light::{LampMoment, Moment};
 use crate::sides::{Sides, sides};
 use crate::texture::MipChain;
 use glam::{DMat3, Vec2, Vec3, Vec4};
@@ -7,6 +8,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::OnceLock;
 use sunbake::disk::manifest::InstanceEntry;
+use sunbake::lamp::LampPath;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
 use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene};
@@ -28,6 +30,8 @@ pub struct Stage {
     pub pages: Vec<PageMaps>,
     /// The sun's path; none where it does not rise.
     pub path: Option<SunPath>,
+    /// The path of the lamp, bake space, if there is one.
+    pub lamp: Option<LampPath>,
     /// For each instance, where its texels lie; none where it has none (and is not drawn).
     charts: Vec<Option<Chart>>,
     /// For each instance, unit shading normals in bake space from those in object space.
@@ -88,7 +92,8 @@ impl Stage {
     pub fn read(folder: &Path) -> Result<Self, StageError> {
         let set = sunbake::disk::read::read(folder)?;
         let scene = sunbake::scene::load(&set.scene_file(), &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
-        Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)
+        let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
+        Ok(stage.with_lamp(set.lamp.as_ref()))
     }
 
     /// Joins a scene with what was baked for it.
@@ -107,7 +112,22 @@ impl Stage {
         let sides = sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let tracer = OnceLock::new();
-        Ok(Self { scene, geometry, bits, pages, path, charts, normal_from_object, sides, mips, tracer })
+        Ok(Self { scene, geometry, bits, pages, path, lamp: None, charts, normal_from_object, sides, mips, tracer })
+    }
+
+    /// The same stage with the lamp whose times are in the pages; its path in world space.
+    pub fn with_lamp(self, lamp: Option<&LampPath>) -> Self {
+        Self { lamp: lamp.map(|path| path.relative_to(self.scene.centre_m)), ..self }
+    }
+
+    /// The lamp at `t`, if there is one.
+    pub fn lamp_moment(&self, t: f64) -> Option<LampMoment> {
+        self.lamp.as_ref().map(|path| LampMoment::new(path, t, self.scene.half_extent_m))
+    }
+
+    /// The moment `t` with all lights that there are.
+    pub fn moment(&self, t: f64) -> Moment {
+        Moment::new(self.path.as_ref(), t).with_lamp(self.lamp_moment(t))
     }
 
     /// The scene made ready for rays.

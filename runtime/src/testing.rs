@@ -3,18 +3,18 @@
 use crate::camera::{Camera, View};
 use crate::compare::{Agreement, color_difference, edges, visibility_difference};
 use crate::gpu::GpuError;
-use crate::light::Moment;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::technique::{BakedCpu, BakedGpu, Technique};
 use glam::{DVec3, IVec2, Vec2};
 use sunbake::atlas::SurfacePoint;
 use sunbake::disk::manifest::InstanceEntry;
+use sunbake::lamp::LampPath;
 use sunbake::maps::{Bits, Lane, LaneMaps, LayerMaps, PageEncoder, PageMaps};
 use sunbake::scene::{Geometry, Scene};
 use sunbake::sun::{SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath};
 use sunbake::trace::Tracer;
-use sunbake::visibility::{RayEngine, lit_at};
+use sunbake::visibility::{Engine, LampEngine, RayEngine, lit_at};
 
 /// An equinox day at a latitude: up in the east at t = 0, in the south at t = 1/2, down in the west at t = 1.
 pub fn equinox(latitude_deg: f64) -> SunPath {
@@ -66,7 +66,7 @@ pub fn bake_lanes(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits, la
     };
     let baked = |path: &SunPath| lanes(path).into_iter().map(|lane| bake_lane(path, lane)).collect();
     let lanes = path.as_ref().map(baked).unwrap_or_default();
-    let pages = vec![PageMaps { width: edge, height: edge, lanes, ao: None }];
+    let pages = vec![PageMaps { width: edge, height: edge, lanes, lamp: None, ao: None }];
     Stage::new(scene, &entries, pages, bits, path).expect("a set made by code agrees with itself")
 }
 
@@ -123,6 +123,29 @@ fn layers_along(
 ) -> Vec<LayerMaps> {
     let tracer = Tracer::new(scene, geometry);
     let engine = RayEngine::new(&tracer, std::slice::from_ref(path), 128);
+    layers_by(scene, geometry, &engine, columns, cell, bits)
+}
+
+/// Adds a lamp, its path in world space, to a stage that [`bake`] made with the same `cell`.
+pub fn with_lamp(mut stage: Stage, path: &LampPath, cell: u32) -> Stage {
+    let in_bake = path.relative_to(stage.scene.centre_m);
+    let layers = {
+        let engine = LampEngine::new(stage.tracer(), &in_bake);
+        let columns = stage.pages[0].width / cell;
+        layers_by(&stage.scene, &stage.geometry, &engine, columns, cell, stage.bits)
+    };
+    stage.pages[0].lamp = Some(layers);
+    stage.with_lamp(Some(path))
+}
+
+fn layers_by(
+    scene: &Scene,
+    geometry: &Geometry,
+    engine: &dyn Engine,
+    columns: u32,
+    cell: u32,
+    bits: Bits,
+) -> Vec<LayerMaps> {
     let edge = columns * cell;
     let mut encoder = PageEncoder::new((edge * edge) as usize, bits, 8);
     for triangle in 0..geometry.triangles.len() as u32 {
@@ -139,7 +162,7 @@ fn layers_along(
                 is_double_sided: scene.material(geometry.instance[triangle as usize] as usize).is_double_sided,
                 triangle,
             };
-            let lit = &lit_at(&engine, &point)[0];
+            let lit = &lit_at(engine, &point)[0];
             encoder.set((texel.y as u32 * edge + texel.x as u32) as usize, lit);
         }
     }
@@ -153,7 +176,7 @@ pub fn twins(
     shot: &Shot,
     t: f64,
 ) -> Result<[(&'static str, Agreement); 2], GpuError> {
-    let moment = Moment::new(shot.stage.path.as_ref(), t);
+    let moment = shot.stage.moment(t);
     let seen = [on_gpu.visibility(shot, &moment)?, on_cpu.visibility(shot, &moment)?];
     let color = [on_gpu.color(shot, &moment)?, on_cpu.color(shot, &moment)?];
     let edges = edges(shot, &seen[1]);

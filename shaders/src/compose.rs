@@ -49,6 +49,8 @@ pub struct PageVariant {
     pub max_code: u16,
     /// In the order of their layers. Empty: there is no sun in the set, or no texel of the page ever sees it.
     pub lanes: Vec<LaneVariant>,
+    /// Array layers of the lamp's textures. None: there is no lamp in the set, or no texel of the page ever sees it.
+    pub lamp_layer_count: u32,
     /// Whether there is an ambient occlusion map.
     pub has_ao: bool,
 }
@@ -79,6 +81,8 @@ pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -
     let mut text = shading(surface, page, filter);
     text.push_str(if page.has_ao { wgsl!("openness_baked") } else { wgsl!("openness_none") });
     text.push_str(wgsl!("shade"));
+    push_lamp(&mut text, page, filter);
+    text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp_shade") } else { wgsl!("lamp_shade_none") });
     text.push_str(wgsl!("lit_fragment"));
     text
 }
@@ -87,6 +91,14 @@ pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -
 pub fn visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = shading(surface, page, filter);
     text.push_str(wgsl!("visibility_fragment"));
+    text
+}
+
+/// The visibility pass of a lamp: entry points `surface_vertex` and `lamp_visibility_fragment`.
+pub fn lamp_visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+    let mut text = on_surface(surface, page);
+    push_lamp(&mut text, page, filter);
+    text.push_str(wgsl!("lamp_visibility_fragment"));
     text
 }
 
@@ -102,17 +114,41 @@ fn constants() -> String {
     )
 }
 
-fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+/// What every program that lights a surface begins with.
+fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
     let mut text = constants();
     text.push_str(wgsl!("frame"));
     text.push_str(wgsl!("place"));
     push_surface(&mut text, surface);
     text.push_str(wgsl!("facing"));
+    if page.layer_count() + page.lamp_layer_count > 0 {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
+    }
+    text
+}
+
+/// What is seen of the lamp.
+fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
+    if page.lamp_layer_count == 0 {
+        text.push_str(wgsl!("lamp_none"));
+        return;
+    }
+    text.push_str(wgsl!("lamp"));
+    text.push_str(wgsl!("lamp_soft_visibility"));
+    text.push_str(match filter {
+        Filter::Nearest => wgsl!("lamp_filter_nearest"),
+        Filter::Bilinear => wgsl!("lamp_filter_bilinear"),
+    });
+    text.push_str(wgsl!("lamp_baked"));
+}
+
+fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
+    let mut text = on_surface(surface, page);
     if page.layer_count() == 0 {
         text.push_str(wgsl!("sun_none"));
         return text;
     }
-    let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
     text.push_str(wgsl!("soft_visibility"));
     text.push_str(&disc_visibility(&page.lanes));
     text.push_str(match filter {

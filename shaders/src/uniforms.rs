@@ -65,6 +65,26 @@ pub struct FrameUniform {
     pub pad_6: f32,
 }
 
+/// A lamp in the scene. `Lamp` in `lamp.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LampUniform {
+    /// Where it is, bake space.
+    pub position_m: [f32; 3],
+    /// The middle of its window, path time.
+    pub t: f32,
+    /// Its light on a surface that faces it from a metre away.
+    pub light: [f32; 3],
+    /// Length of its window, path time.
+    pub width_t: f32,
+    /// Its radius.
+    pub radius_m: f32,
+    /// One over its diameter; very large for a point.
+    pub balls_per_metre: f32,
+    #[doc(hidden)]
+    pub pad: [f32; 2],
+}
+
 /// A material. `Material` in `frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

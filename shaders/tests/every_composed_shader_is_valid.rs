@@ -26,8 +26,13 @@ fn surfaces() -> Vec<SurfaceVariant> {
 fn pages() -> Vec<PageVariant> {
     let lane = |layer_count, weight| LaneVariant { layer_count, weight, chord: 0.75 };
     let lanes = [vec![], vec![lane(0, 1.0)], vec![lane(1, 1.0)], vec![lane(2, 0.25), lane(4, 0.5), lane(0, 0.25)]];
-    let with = |lanes: &Vec<LaneVariant>, max_code, has_ao| PageVariant { max_code, lanes: lanes.clone(), has_ao };
-    lanes.iter().flat_map(|l| [with(l, 255, false), with(l, 65_535, true)]).collect()
+    let with = |lanes: &Vec<LaneVariant>, max_code, has_ao, lamp_layer_count| PageVariant {
+        max_code,
+        lanes: lanes.clone(),
+        lamp_layer_count,
+        has_ao,
+    };
+    lanes.iter().flat_map(|l| [with(l, 255, false, 0), with(l, 65_535, true, 0), with(l, 65_535, true, 3)]).collect()
 }
 
 #[test]
@@ -39,6 +44,7 @@ fn every_composed_shader_is_valid() {
             for filter in [Filter::Nearest, Filter::Bilinear] {
                 validated(&lit_shader(surface, &page, filter));
                 validated(&visibility_shader(surface, &page, filter));
+                validated(&lamp_visibility_shader(surface, &page, filter));
             }
         }
     }
@@ -62,9 +68,12 @@ fn what_a_page_has_not_is_not_in_its_program() {
     let all = PageVariant {
         max_code: 255,
         lanes: vec![LaneVariant { layer_count: 1, weight: 1.0, chord: 1.0 }],
+        lamp_layer_count: 0,
         has_ao: true,
     };
     assert_eq!(names(&all, plain), ["frame", "materials", "rise_map", "fall_map", "ao_map"]);
+    let lamp = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
+    assert_eq!(names(&lamp, plain), ["frame", "materials", "lamp", "lamp_rise_map", "lamp_fall_map"]);
 }
 
 fn members(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
@@ -86,6 +95,10 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
         ray_per_row, sun_cos_radius, sun_direction, discs_per_radian, sun_light, sky_light, ground_light, zenith,
         horizon, glow, haze);
     assert_eq!(members(&module, "Frame"), (rust, size_of::<FrameUniform>() as u32));
+    let page = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
+    let lit = validated(&lamp_visibility_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
+    let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, balls_per_metre);
+    assert_eq!(members(&lit, "Lamp"), (rust, size_of::<LampUniform>() as u32));
     let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
     assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));
 }

@@ -2,15 +2,16 @@
 
 use super::Prepared;
 use crate::atlas::Atlas;
-use crate::disk::manifest::{self, ArcEntry, InstanceEntry, Manifest, PathEntry, Stats};
+use crate::disk::manifest::{self, ArcEntry, ErrorEntry, InstanceEntry, LampEntry, Manifest, PathEntry, Stats};
 use crate::disk::write::SCENE_FILE;
+use crate::lamp::{LampKey, LampPath};
 use crate::scene::{Alpha, Scene};
 use crate::settings::BakeSettings;
 use crate::sun::{self, SunPath};
 
 /// What the manifest says of the request; the rest is left empty.
 pub(super) fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSettings) -> Manifest {
-    let Prepared { scene, path, plan, .. } = prepared;
+    let Prepared { scene, path, lamp, plan, .. } = prepared;
     Manifest {
         format: manifest::FORMAT.into(),
         version: manifest::VERSION,
@@ -22,12 +23,13 @@ pub(super) fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSet
             texels_per_metre: atlas.texels_per_metre,
         },
         path: path.as_ref().map(path_entry),
+        lamp: lamp.as_ref().map(lamp_entry),
         bits: settings.bits.count(),
         atlases: Vec::new(),
         instances: Vec::new(),
         effects: plan.entries(),
         stats: Stats::default(),
-        error: manifest::ErrorEntry::default(),
+        error: ErrorEntry::default(),
     }
 }
 
@@ -46,6 +48,18 @@ fn path_entry(path: &SunPath) -> PathEntry {
         angular_radius_deg: path.angular_radius_rad.to_degrees(),
         ephemeris_error_deg: day.map(|d| d.ephemeris_error_deg),
         arcs: path.arcs().iter().map(arc_entry).collect(),
+    }
+}
+
+/// The path; what baking it took and lost is left empty.
+fn lamp_entry(lamp: &LampPath) -> LampEntry {
+    let key = |key: &LampKey| manifest::LampKeyEntry { t: key.t, position: key.position_m.to_array() };
+    LampEntry {
+        keys: lamp.keys().iter().map(key).collect(),
+        radius_m: lamp.radius_m(),
+        duration_min: lamp.duration_min(),
+        stats: manifest::LampStats::default(),
+        error: ErrorEntry::default(),
     }
 }
 
@@ -79,19 +93,26 @@ pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &[(usize, 
 /// Most layers that may be asked for.
 const MOST_LAYERS: u64 = 16;
 
-/// Advice where slots ran out, in words that know the flag already given.
-pub(super) fn loss_warning(manifest: &Manifest, settings: &BakeSettings) -> Option<String> {
-    let merge = &manifest.error.merge_min;
-    let needed = manifest.stats.most_intervals.div_ceil(4);
+/// Advice where slots ran out, in words that know the flag already given: of the sun and of the lamp, a sentence each.
+pub(super) fn loss_warnings(manifest: &Manifest, settings: &BakeSettings) -> Vec<String> {
+    let sun = loss_warning(&manifest.error, manifest.stats.most_intervals, "", settings);
+    let lamp = manifest.lamp.as_ref();
+    let lamp = lamp.and_then(|lamp| loss_warning(&lamp.error, lamp.stats.most_intervals, " of the lamp", settings));
+    sun.into_iter().chain(lamp).collect()
+}
+
+fn loss_warning(error: &ErrorEntry, most_intervals: u64, of_what: &str, settings: &BakeSettings) -> Option<String> {
+    let needed = most_intervals.div_ceil(4);
     let advice = match needed {
         ..=MOST_LAYERS => format!("--layers {needed} keeps them all"),
         _ if settings.layer_cap as u64 >= MOST_LAYERS => "that is as many as there are".into(),
         _ => format!("--layers {MOST_LAYERS} keeps more of them"),
     };
-    (manifest.error.merged_texels > 0).then(|| {
+    (error.merged_texels > 0).then(|| {
         format!(
-            "{} texels have more intervals than --layers {} holds: the worst is wrong for {:.1} minutes of the day; {advice}",
-            manifest.error.merged_texels, settings.layer_cap, merge.worst
+            "{} texels have more intervals{of_what} than --layers {} holds: the worst is wrong for {:.1} minutes of the day; \
+             {advice}",
+            error.merged_texels, settings.layer_cap, error.merge_min.worst
         )
     })
 }

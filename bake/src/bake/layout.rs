@@ -83,7 +83,9 @@ const BYTES_PER_TRIANGLE: u64 = 600;
 /// Refuses pages of a size whose bake would need more memory than allowed.
 pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -> Result<(), BakeError> {
     let texels = u64::from(page_size_texels).pow(2);
-    let lanes = settings.lane_count as u64;
+    // A lamp beside the sun is one lane more; one instead of the sun takes its place.
+    let lamps = u64::from(settings.lamp.is_some());
+    let lanes = settings.lane_count as u64 + lamps;
     // Codes are held twice while they are written; two layers are what a scene usually needs.
     let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2 * lanes;
     let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
@@ -93,11 +95,11 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
         return Ok(());
     }
     Err(BakeError::Memory {
-        what: match lanes {
+        what: match settings.lane_count {
             1 => format!("a page of {page_size_texels} x {page_size_texels} texels"),
-            _ => format!("a page of {page_size_texels} x {page_size_texels} texels in {lanes} lanes"),
-        },
-        smaller: if lanes > 1 { "--size or --lanes" } else { "--size" },
+            lanes => format!("a page of {page_size_texels} x {page_size_texels} texels in {lanes} lanes"),
+        } + if lamps > 0 { " with a lamp" } else { "" },
+        smaller: if settings.lane_count > 1 { "--size or --lanes" } else { "--size" },
         needed_mib: needed >> 20,
         allowed_mib: settings.max_memory_bytes >> 20,
     })

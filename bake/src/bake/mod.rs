@@ -3,23 +3,27 @@
 mod entries;
 mod layout;
 mod leave_out;
+mod light;
 mod pages;
 
 use crate::atlas::AtlasError;
-use crate::disk::manifest::{Manifest, StageSeconds};
+use crate::disk::manifest::{LampEntry, Manifest, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge};
+use crate::lamp::{self, LampError, LampPath};
 use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan};
 use crate::progress::{Progress, Stage};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
-use crate::settings::{BakeSettings, SunRequest};
+use crate::settings::{BakeSettings, EngineChoice, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
-use entries::{instance_entries, loss_warning, manifest_of};
+use crate::visibility::Engine;
+use entries::{instance_entries, loss_warnings, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
 use leave_out::{darkness_warning, leave_out};
-use pages::{PageBaker, Sun};
+use light::{Account, Light};
+use pages::{Lights, PageBaker};
 use std::path::Path;
 use std::time::Instant;
 
@@ -35,6 +39,15 @@ pub enum BakeError {
     /// The path file is wrong.
     #[error(transparent)]
     Keyed(#[from] KeyedError),
+    /// The lamp's path is wrong.
+    #[error(transparent)]
+    Lamp(#[from] LampError),
+    /// Two lamps are asked for.
+    #[error("--path and --lamp both bring a lamp, and a set holds one: give one of them")]
+    TwoLamps,
+    /// The engine finds no lamps.
+    #[error("--engine {0} does not find when a lamp is seen: give exact or rays:N")]
+    LampEngine(EngineChoice),
     /// The scene's light makes no path.
     #[error(transparent)]
     Light(#[from] LightError),
@@ -114,6 +127,8 @@ pub struct Prepared {
     pub scene: Scene,
     /// The sun's path, if it rises.
     pub path: Option<SunPath>,
+    /// The lamp's path, world space, if one is asked for.
+    pub lamp: Option<LampPath>,
     /// What will be baked and why.
     pub plan: EffectPlan,
     /// What a user should know.
@@ -129,9 +144,33 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     let mut scene = scene::load(scene_file, &limits)?;
     leave_out(&mut scene, &settings.leave_out)?;
     let mut warnings = scene.warnings.clone();
-    let path = sun_path(settings, &scene, &mut warnings)?;
-    let plan = EffectPlan::new(&scene, path.as_ref(), settings.lane_count, "the sun does not rise");
-    Ok(Prepared { scene, path, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
+    let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
+    let path = if is_lamp_alone { None } else { sun_path(settings, &scene, &mut warnings)? };
+    let lamp = lamp_path(settings, path.as_ref())?;
+    let no_sun = if is_lamp_alone { "a lamp is baked instead" } else { "the sun does not rise" };
+    let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings.lane_count, no_sun);
+    Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
+}
+
+/// The lamp that is asked for, beside the sun or instead of it. Beside a sun it takes as long as that.
+fn lamp_path(settings: &BakeSettings, sun: Option<&SunPath>) -> Result<Option<LampPath>, BakeError> {
+    let instead = match &settings.sun {
+        SunRequest::Keyed { json, .. } if lamp::is_lamp(json) => Some(json),
+        _ => None,
+    };
+    let json = match (&settings.lamp, instead) {
+        (None, None) => return Ok(None),
+        (Some(_), Some(_)) => return Err(BakeError::TwoLamps),
+        (Some(json), None) | (None, Some(json)) => json,
+    };
+    if !settings.engine.finds_lamps() {
+        return Err(BakeError::LampEngine(settings.engine));
+    }
+    let lamp = lamp::parse_lamp(json)?;
+    Ok(Some(match sun {
+        Some(sun) => lamp.lasting(sun.duration_min)?,
+        None => lamp,
+    }))
 }
 
 /// Bakes `scene_file` into the folder `target`. `force` allows an older set there to be replaced.
@@ -161,7 +200,7 @@ fn bake_prepared(
     settings: &BakeSettings,
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
-    let Prepared { scene, path, plan, .. } = prepared;
+    let Prepared { scene, path, lamp, plan, .. } = prepared;
     let settings = &BakeSettings { lane_count: plan.lane_count(settings.lane_count), ..settings.clone() };
     check_memory(scene, settings, settings.page_size_texels)?;
     check_cancelled(progress)?;
@@ -176,27 +215,66 @@ fn bake_prepared(
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let sun = engine.as_deref().map(|engine| Sun { engine, lanes: &lanes, duration_min });
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, sun, progress, seconds);
+    let sun = engine.as_deref().map(|engine| Light { engine, lanes: &lanes, duration_min, stage: Stage::Visibility });
+    let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
+    let lamp = lamp.as_ref().zip(lamp_engine.as_deref()).map(|(path, engine)| {
+        let duration_min = path.duration_min();
+        Light { engine, lanes: &[Lane::CENTRE], duration_min, stage: Stage::Lamp }
+    });
+    let lights = Lights { sun, lamp };
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let written = glb::write_glb(scene, &atlas.layouts)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
-    let PageBaker { mut stats, loss, .. } = pages;
-    stats.bytes = writer.bytes();
+    let manifest = finished(pages, prepared, &lights, settings);
     let manifest = Manifest {
-        stats,
+        stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,
         instances: instance_entries(scene, atlas, &written.places),
-        error: loss.finish(duration_min),
-        ..manifest_of(prepared, atlas, settings)
+        ..manifest
     };
     check_cancelled(progress)?;
     writer.finish(&manifest)?;
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
-    warnings.extend(loss_warning(&manifest, settings));
+    warnings.extend(loss_warnings(&manifest, settings));
     Ok(BakeReport { manifest, warnings })
+}
+
+fn lamp_engine<'a>(
+    choice: EngineChoice,
+    tracer: &'a Tracer,
+    path: &LampPath,
+    scene: &Scene,
+) -> Result<Box<dyn Engine + 'a>, BakeError> {
+    let engine = choice.lamp_engine(tracer, &path.relative_to(scene.centre_m));
+    engine.ok_or(BakeError::LampEngine(choice))
+}
+
+/// The manifest with what baking its lights took and lost.
+fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &BakeSettings) -> Manifest {
+    let PageBaker { stats, sun, lamp, atlas, .. } = pages;
+    let manifest = manifest_of(prepared, atlas, settings);
+    let Account { work, intervals, dark_texels, most_intervals, loss } = sun;
+    let lamp = manifest.lamp.zip(lights.lamp).map(|(entry, light)| {
+        let (stats, error) = lamp.of_lamp(&light);
+        LampEntry { stats, error, ..entry }
+    });
+    Manifest {
+        lamp,
+        stats: Stats {
+            rays: work.rays,
+            node_tests: work.nodes,
+            triangle_tests: work.triangles,
+            intervals,
+            dark_texels,
+            most_intervals,
+            ..stats
+        },
+        error: loss.finish(lights.sun.map_or(0.0, |sun| sun.duration_min)),
+        ..manifest
+    }
 }
 
 /// So many lanes across the sun's disc, and the path of each.

@@ -1,39 +1,38 @@
 //! The pages of a bake, one after the other, so that only one is in memory.
 
+use super::light::{Account, LaneEncoders, Light};
 use super::{BakeError, check_cancelled, timed};
 use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
 use crate::disk::write::SetWriter;
-use crate::loss::LossTally;
 use crate::loss_map::LossMap;
-use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder, PageMaps};
+use crate::maps::{LaneMaps, PageMaps};
 use crate::progress::{Progress, Stage};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
-use crate::visibility::{self, Engine, IntervalTable, Intervals, Work};
+use crate::visibility::{self, IntervalTable, Work};
 use std::time::Instant;
 
-/// Who answers when texels see the sun.
+/// What a bake is lit by.
 #[derive(Clone, Copy)]
-pub(super) struct Sun<'a> {
-    /// Answers for as many lanes as there are.
-    pub engine: &'a dyn Engine,
-    /// The lanes across the disc.
-    pub lanes: &'a [Lane],
-    /// Minutes of the path.
-    pub duration_min: f64,
+pub(super) struct Lights<'a> {
+    /// None where the sun does not rise, or is not asked for.
+    pub sun: Option<Light<'a>>,
+    /// A lamp that moves through the scene.
+    pub lamp: Option<Light<'a>>,
 }
 
 /// Bakes pages, and keeps the account.
 pub(super) struct PageBaker<'a> {
     scene: &'a Scene,
     geometry: &'a Geometry,
-    atlas: &'a Atlas,
+    pub atlas: &'a Atlas,
     settings: &'a BakeSettings,
-    sun: Option<Sun<'a>>,
+    lights: Lights<'a>,
     progress: &'a dyn Progress,
     pub stats: Stats,
-    pub loss: LossTally,
+    pub sun: Account,
+    pub lamp: Account,
     /// Of the page at hand, if it was asked for.
     loss_map: Option<LossMap>,
 }
@@ -44,7 +43,7 @@ impl<'a> PageBaker<'a> {
         geometry: &'a Geometry,
         atlas: &'a Atlas,
         settings: &'a BakeSettings,
-        sun: Option<Sun<'a>>,
+        lights: Lights<'a>,
         progress: &'a dyn Progress,
         seconds: StageSeconds,
     ) -> Self {
@@ -52,12 +51,13 @@ impl<'a> PageBaker<'a> {
             triangles: scene.triangle_count() as u64,
             dropped_triangles: scene.dropped.total(),
             charts: atlas.chart_count as u64,
-            engine: sun.map_or("none".into(), |sun| sun.engine.name()),
+            engine: lights.sun.map_or("none".into(), |sun| sun.engine.name()),
             threads: rayon::current_num_threads(),
             seconds,
             ..Stats::default()
         };
-        Self { scene, geometry, atlas, settings, sun, progress, stats, loss: LossTally::default(), loss_map: None }
+        let (sun, lamp) = (Account::default(), Account::default());
+        Self { scene, geometry, atlas, settings, lights, progress, stats, sun, lamp, loss_map: None }
     }
 
     pub fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<AtlasEntry>, BakeError> {
@@ -83,33 +83,46 @@ impl<'a> PageBaker<'a> {
         self.stats.seconds.unwrap += started.elapsed().as_secs_f64();
         self.stats.texels += samples.samples.len() as u64;
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
-        let lanes = match self.sun {
-            None => Vec::new(),
-            Some(sun) => {
-                let order = atlas::by_tiles(&samples, size);
-                let (tables, work) = self.find_lit(sun.engine, &samples, &order).ok_or(BakeError::Cancelled)?;
-                self.stats.rays += work.rays;
-                self.stats.node_tests += work.nodes;
-                self.stats.triangle_tests += work.triangles;
-                self.encode(index, sun, &samples, &order, &tables)
-            }
-        };
+        self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
+        let order = atlas::by_tiles(&samples, size);
+        let Lights { sun, lamp } = self.lights;
+        let mut account = std::mem::take(&mut self.sun);
+        let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, &samples, &order)).transpose()?;
+        self.sun = account;
+        let mut account = std::mem::take(&mut self.lamp);
+        let lamp = lamp.map(|lamp| self.bake_light(index, &lamp, &mut account, &samples, &order)).transpose()?;
+        self.lamp = account;
         check_cancelled(self.progress)?;
-        Ok(PageMaps { width: size.width, height: size.height, lanes, ao: None })
+        let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
+        Ok(PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ao: None })
+    }
+
+    /// Finds and encodes when the texels of a page see a light.
+    fn bake_light(
+        &mut self,
+        page: usize,
+        light: &Light,
+        account: &mut Account,
+        samples: &PageSamples,
+        order: &[u32],
+    ) -> Result<Vec<LaneMaps>, BakeError> {
+        let (tables, work) = self.find_lit(light, samples, order).ok_or(BakeError::Cancelled)?;
+        account.work = account.work + work;
+        Ok(self.encode(page, light, account, samples, order, &tables))
     }
 
     /// Answers in the given order of samples.
     fn find_lit(
         &mut self,
-        engine: &dyn Engine,
+        light: &Light,
         PageSamples { samples }: &PageSamples,
         order: &[u32],
     ) -> Option<(Vec<IntervalTable>, Work)> {
-        self.progress.start(Stage::Visibility, samples.len() as u64);
+        self.progress.start(light.stage, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
             let point = |i: usize| atlas::surface_point(scene, geometry, &samples[order[i] as usize]);
-            visibility::find_lit(engine, samples.len(), point, |count| {
+            visibility::find_lit(light.engine, samples.len(), point, |count| {
                 progress.advance(count as u64);
                 !progress.is_cancelled()
             })
@@ -119,7 +132,8 @@ impl<'a> PageBaker<'a> {
     fn encode(
         &mut self,
         page: usize,
-        sun: Sun,
+        light: &Light,
+        account: &mut Account,
         samples: &PageSamples,
         order: &[u32],
         tables: &[IntervalTable],
@@ -128,43 +142,19 @@ impl<'a> PageBaker<'a> {
         self.progress.start(Stage::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
-        let texel_count = size.width as usize * size.height as usize;
-        let encoder = |&lane| (lane, PageEncoder::new(texel_count, self.settings.bits, self.settings.layer_cap));
-        let mut encoders: Vec<(Lane, PageEncoder)> = sun.lanes.iter().map(encoder).collect();
-        self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
+        let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);
         let mut answers = tables.iter().flat_map(IntervalTable::iter);
         for sample in order.iter().map(|&i| &texels[i as usize]) {
-            let loss = self.encode_texel(&mut encoders, sample.texel as usize, &mut answers);
+            let loss = encoders.set(sample.texel as usize, &mut answers, account);
             if let Some(map) = &mut self.loss_map {
-                map.set(sample.texel as usize, &loss, sun.duration_min);
+                map.add(sample.texel as usize, &loss, light.duration_min);
             }
-            self.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
+            account.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
         }
         for copy in atlas::gutter(size, samples, self.settings.padding_texels) {
-            let source = texels[copy.sample as usize].texel as usize;
-            encoders.iter_mut().for_each(|(_, encoder)| encoder.copy(copy.texel as usize, source));
+            encoders.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
         }
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
-        encoders.into_iter().map(|(lane, encoder)| LaneMaps { lane, layers: encoder.finish() }).collect()
-    }
-
-    /// Stores a texel's answers, one a lane; its loss is the lanes' mean by weight.
-    fn encode_texel(
-        &mut self,
-        encoders: &mut [(Lane, PageEncoder)],
-        texel: usize,
-        answers: &mut impl Iterator<Item = Intervals>,
-    ) -> EncodeLoss {
-        let mut loss = EncodeLoss::default();
-        let mut found = 0;
-        for ((lane, encoder), lit) in encoders.iter_mut().zip(answers) {
-            let count = lit.as_slice().len() as u64;
-            found += count;
-            self.stats.most_intervals = self.stats.most_intervals.max(count);
-            loss.add_lane(&encoder.set(texel, &lit), lane.weight);
-        }
-        self.stats.intervals += found;
-        self.stats.dark_texels += u64::from(found == 0);
-        loss
+        encoders.finish()
     }
 }

@@ -31,7 +31,7 @@ pub enum Command {
     ///
     /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the sun
     /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
-    /// where there are several) and ao. With these, any ray tracer can check a bake.
+    /// where there are several), lamp (when it sees the lamp, where the set has one) and ao. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
 }
 
@@ -111,12 +111,22 @@ pub struct SunArgs {
     /// Part of the day to bake, by local clocks; may pass midnight. [default: sunrise to sunset]
     #[arg(long, value_name = "HH:MM-HH:MM", value_parser = parse_window)]
     pub window: Option<[f64; 2]>,
-    /// A file of keyed sun directions instead of a place and a date.
+    /// A file of keyed directions or positions instead of a place and a date.
     ///
     /// JSON: {"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}, ...]}, with an optional "t" in
     /// each key and optional "angular_radius_deg" and "duration_min" beside "keys".
+    ///
+    /// With positions it is the path of a lamp that moves through the scene, and the lamp is baked instead of the sun; see
+    /// --lamp.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["place", "date", "utc_offset", "window"])]
     pub path: Option<PathBuf>,
+    /// A file of keyed positions: a lamp that moves through the scene, beside the sun.
+    ///
+    /// JSON: {"radius_m": 0.05, "keys": [{"t": 0, "position": [0, 2, 0]}, {"t": 1, "position": [3, 2, 0]}]}, in metres of
+    /// the scene's world, joined by straight lines. The lamp's t is the day's: it is at its last key when the sun sets.
+    /// What stands beyond the lamp does not hide it. Bytes and time grow by those of a lane.
+    #[arg(long, value_name = "FILE")]
+    pub lamp: Option<PathBuf>,
 }
 
 #[derive(Debug, ClapArgs)]

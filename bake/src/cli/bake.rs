@@ -87,7 +87,9 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
              --engine bisect:N"
         )));
     }
+    let lamp = args.sun.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
     Ok(BakeSettings {
+        lamp,
         leave_out: args.leave_out.clone(),
         density: cost.texels_per_metre.map_or(preset.density, Density::TexelsPerMetre),
         page_size_texels: cost.size.unwrap_or(preset.page_size_texels),
@@ -104,11 +106,16 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     })
 }
 
+/// The text of a path file that a flag names.
+fn path_file(file: &Path, flag: &str) -> Result<String, Failure> {
+    std::fs::read_to_string(file)
+        .map_err(|e| Failure::io(format!("cannot read the path {}: {e}; check {flag}", file.display())))
+}
+
 fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
     let given = &args.sun;
     if let Some(file) = &given.path {
-        let json = std::fs::read_to_string(file)
-            .map_err(|e| Failure::io(format!("cannot read the sun path {}: {e}; check --path", file.display())))?;
+        let json = path_file(file, "--path")?;
         return Ok(SunRequest::Keyed { json, north_deg: given.north });
     }
     let [latitude_deg, longitude_deg] = given.place.unwrap_or(DEFAULT_PLACE_DEG);

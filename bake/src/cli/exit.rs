@@ -47,9 +47,17 @@ impl From<BakeError> for Failure {
                 ErrorClass::BadInput | ErrorClass::Unsupported => 3,
             },
             BakeError::Write(_) | BakeError::TooLarge(_) => 2,
-            BakeError::Day(_) | BakeError::NoSuchMaterial { .. } | BakeError::Atlas(AtlasError::BadSetting { .. }) => 1,
+            BakeError::Day(_)
+            | BakeError::TwoLamps
+            | BakeError::LampEngine(_)
+            | BakeError::NoSuchMaterial { .. }
+            | BakeError::Atlas(AtlasError::BadSetting { .. }) => 1,
             BakeError::Cancelled => 130,
-            BakeError::Keyed(_) | BakeError::Light(_) | BakeError::Atlas(_) | BakeError::Memory { .. } => 3,
+            BakeError::Keyed(_)
+            | BakeError::Lamp(_)
+            | BakeError::Light(_)
+            | BakeError::Atlas(_)
+            | BakeError::Memory { .. } => 3,
             BakeError::Threads { .. } => 5,
         };
         Self { code, error: error.into() }

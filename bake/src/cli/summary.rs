@@ -1,9 +1,12 @@
 //! A set, or a bake that is still to come, in a few lines: what people read. Programs read the manifest.
 
+use glam::DVec3;
 use std::fmt::Write;
 use sunbake::Prepared;
 use sunbake::atlas::Density;
-use sunbake::disk::manifest::{AtlasEntry, EffectEntry, LossEntry, Manifest, PathEntry, StageSeconds};
+use sunbake::disk::manifest::{
+    AtlasEntry, EffectEntry, ErrorEntry, LampEntry, LampKeyEntry, LossEntry, Manifest, PathEntry, StageSeconds,
+};
 use sunbake::settings::BakeSettings;
 
 /// Lines of a label and a value, in two columns.
@@ -20,19 +23,29 @@ impl Lines {
 /// The set: the day, the texels, the losses, the cost.
 pub fn of(manifest: &Manifest) -> String {
     let mut lines = Lines::default();
-    lines.line("sun", manifest.path.as_ref().map_or("it does not rise: no times are stored".into(), sun));
+    match (&manifest.path, &manifest.lamp) {
+        (Some(path), _) => lines.line("sun", sun(path)),
+        (None, None) => lines.line("sun", "it does not rise: no times are stored"),
+        (None, Some(_)) => lines.line("sun", "none: no times of it are stored"),
+    }
+    if let Some(entry) = &manifest.lamp {
+        lines.line("lamp", lamp(entry));
+    }
     lines.line("scene", scene(manifest));
     lines.line("atlas", atlas(manifest));
     if manifest.path.is_some() {
         lines.line("times", times(manifest));
         lines.line("rounding", loss(&manifest.error.quantisation_min));
-        let merged = manifest.error.merged_texels;
-        let merging = || format!("{}; {merged} texels", loss(&manifest.error.merge_min));
-        lines.line("merging", if merged == 0 { "nothing lost".into() } else { merging() });
-        if let Some(text) = loss_maps(manifest) {
-            lines.line("loss map", text);
-        }
+        lines.line("merging", merging(&manifest.error));
         lines.line("engine", engine(manifest));
+    }
+    if let Some(entry) = &manifest.lamp {
+        lines.line("lamp times", lamp_times(manifest, entry));
+        lines.line("  rounding", loss(&entry.error.quantisation_min));
+        lines.line("  merging", merging(&entry.error));
+    }
+    if let Some(text) = loss_maps(manifest) {
+        lines.line("loss map", text);
     }
     lines.line("cost", cost(manifest));
     lines.0
@@ -45,7 +58,12 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
         (Some(start), Some(end)) => format!("{start} to {end}, {} arc(s)", path.arcs().len()),
         _ => format!("{} arc(s), {:.0} minutes", path.arcs().len(), path.duration_min),
     });
-    lines.line("sun", sun.unwrap_or("it does not rise: no times would be stored".into()));
+    let none = if prepared.lamp.is_some() { "none" } else { "it does not rise: no times would be stored" };
+    lines.line("sun", sun.unwrap_or(none.into()));
+    if let Some(path) = &prepared.lamp {
+        let (keys, length_m) = (path.keys().len(), path.segments().map(|s| s.length_m()).sum());
+        lines.line("lamp", lamp_text(keys, length_m, path.radius_m(), path.duration_min()));
+    }
     let (triangles, instances) = (prepared.scene.triangle_count(), prepared.scene.instances.len());
     lines.line("scene", format!("{}, {}", count(triangles as u64, "triangle"), count(instances as u64, "instance")));
     let edge = settings.page_size_texels;
@@ -102,6 +120,30 @@ fn sun(path: &PathEntry) -> String {
     format!(
         "{start} to {end} (UTC{offset:+}) at {latitude},{longitude}; within {error_deg:.4} degrees of the ephemeris"
     )
+}
+
+fn lamp(entry: &LampEntry) -> String {
+    let apart = |pair: &[LampKeyEntry]| DVec3::from(pair[0].position).distance(pair[1].position.into());
+    lamp_text(entry.keys.len(), entry.keys.windows(2).map(apart).sum(), entry.radius_m, entry.duration_min)
+}
+
+fn lamp_text(keys: usize, length_m: f64, radius_m: f64, duration_min: f64) -> String {
+    format!("{keys} keys, {length_m:.2} m in {duration_min:.0} minutes, a ball of radius {radius_m} m")
+}
+
+fn lamp_times(manifest: &Manifest, entry: &LampEntry) -> String {
+    let layers = manifest.atlases.iter().filter_map(|a| a.lamp.as_ref()).map(|l| l.layers.len()).max().unwrap_or(0);
+    let stats = &entry.stats;
+    let mean = stats.intervals as f64 / (manifest.stats.texels as f64).max(1.0);
+    let layers = count(layers as u64, "layer");
+    format!("{layers}; {mean:.2} intervals a texel, {} at most; found by {}", stats.most_intervals, stats.engine)
+}
+
+fn merging(error: &ErrorEntry) -> String {
+    match error.merged_texels {
+        0 => "nothing lost".into(),
+        merged => format!("{}; {merged} texels", loss(&error.merge_min)),
+    }
 }
 
 fn scene(manifest: &Manifest) -> String {
@@ -173,5 +215,5 @@ fn engine(manifest: &Manifest) -> String {
 fn cost(manifest: &Manifest) -> String {
     let total: f64 = by_stage(&manifest.stats.seconds).iter().map(|(_, s)| s).sum();
     let mib = manifest.stats.bytes as f64 / f64::from(1 << 20);
-    format!("{total:.1} s ({:.1} s of it tracing the sun), {mib:.1} MiB", manifest.stats.seconds.visibility)
+    format!("{total:.1} s ({:.1} s of it tracing light), {mib:.1} MiB", manifest.stats.seconds.visibility)
 }

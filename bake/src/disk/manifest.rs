@@ -23,8 +23,11 @@ pub struct Manifest {
     pub source: SourceEntry,
     /// The scene with the bake's texture coordinates.
     pub scene: SceneEntry,
-    /// The sun's path; null where the sun did not rise.
+    /// The sun's path; null where the sun did not rise, or only a lamp was baked.
     pub path: Option<PathEntry>,
+    /// The path of a lamp that moves through the scene, where one was baked. Its t is the sun's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lamp: Option<LampEntry>,
     /// 8 or 16: bits of each stored time.
     pub bits: u32,
     /// Pages of the atlas.
@@ -110,6 +113,45 @@ pub struct ArcEntry {
     pub t: [f64; 2],
 }
 
+/// A lamp's path, and what baking it took and lost. It moves at constant speed along straight lines from key to key.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LampEntry {
+    /// Two at least, from t = 0 to t = 1, times ascending.
+    pub keys: Vec<LampKeyEntry>,
+    /// Radius of the lamp.
+    pub radius_m: f64,
+    /// Minutes from t = 0 to t = 1; the sun's, where the set has a sun.
+    pub duration_min: f64,
+    /// What it took. Its seconds are among the set's.
+    pub stats: LampStats,
+    /// What storing its times lost.
+    pub error: ErrorEntry,
+}
+
+/// A place of the lamp.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LampKeyEntry {
+    /// When.
+    pub t: f64,
+    /// Where, in world space.
+    pub position: [f64; 3],
+}
+
+/// What baking a lamp took.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct LampStats {
+    /// Engine and its parameters, as given on the command line.
+    pub engine: String,
+    /// Rays traced.
+    pub rays: u64,
+    /// Lit intervals found.
+    pub intervals: u64,
+    /// Texels that never see the lamp.
+    pub dark_texels: u64,
+    /// Most lit intervals of any texel.
+    pub most_intervals: u64,
+}
+
 /// A page of the atlas.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtlasEntry {
@@ -119,6 +161,9 @@ pub struct AtlasEntry {
     pub height: u32,
     /// Paths across the sun's disc; one where the sun is a line along its path.
     pub lanes: Vec<LaneEntry>,
+    /// When texels see the lamp, in every page of a set that has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lamp: Option<LampMapsEntry>,
     /// Ambient occlusion, 0 is occluded.
     pub ao: Option<String>,
     /// Bent normals.
@@ -149,6 +194,13 @@ pub struct LaneEntry {
     pub offset_deg: f64,
     /// Share of the disc's area.
     pub weight: f64,
+    /// Texture pairs; channel c of layer l holds interval 4 l + c.
+    pub layers: Vec<LayerEntry>,
+}
+
+/// A lamp's times on a page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LampMapsEntry {
     /// Texture pairs; channel c of layer l holds interval 4 l + c.
     pub layers: Vec<LayerEntry>,
 }

@@ -1,6 +1,9 @@
 //! Reads a baked set. The only reader: what it accepts is checked here once, and trusted afterwards.
 
-use super::manifest::{ArcEntry, AtlasEntry, FORMAT, InstanceEntry, Manifest, PathEntry, VERSION};
+use super::manifest::{
+    ArcEntry, AtlasEntry, FORMAT, InstanceEntry, LampEntry, LampKeyEntry, LayerEntry, Manifest, PathEntry, VERSION,
+};
+use crate::lamp::{LampError, LampKey, LampPath};
 use crate::maps::{Bits, Lane, LaneMaps, LayerMaps, PageMaps};
 use crate::sun::{Day, PathError, SunArc, SunPath};
 use glam::DVec3;
@@ -21,6 +24,8 @@ pub struct BakedSet {
     pub manifest: Manifest,
     /// The sun's path, if the set has a sun.
     pub path: Option<SunPath>,
+    /// The lamp's path, world space, if the set has a lamp.
+    pub lamp: Option<LampPath>,
     /// Depth of stored times.
     pub bits: Bits,
     /// One per atlas page.
@@ -76,9 +81,11 @@ pub fn read(folder: &Path) -> Result<BakedSet, ReadError> {
     let bits =
         Bits::from_count(manifest.bits).ok_or_else(|| wrong(format!("bits is {}, not 8 or 16", manifest.bits)))?;
     let path = manifest.path.as_ref().map(sun_path).transpose().map_err(|e| wrong(e.to_string()))?;
+    let lamp = manifest.lamp.as_ref().map(lamp_path).transpose().map_err(|e| wrong(e.to_string()))?;
     check_instances(&manifest).map_err(&wrong)?;
+    check_lamp(&manifest).map_err(&wrong)?;
     let pages = manifest.atlases.iter().map(|atlas| read_page(folder, atlas, bits)).collect::<Result<_, _>>()?;
-    Ok(BakedSet { folder: folder.to_owned(), manifest, path, bits, pages })
+    Ok(BakedSet { folder: folder.to_owned(), manifest, path, lamp, bits, pages })
 }
 
 /// Reads and checks `sunbake.json` alone: enough for `sunbake inspect`.
@@ -107,7 +114,9 @@ fn check_names(manifest: &Manifest) -> Result<(), String> {
     for atlas in &manifest.atlases {
         names.extend(atlas.ao.iter().chain(&atlas.bent));
         names.extend(atlas.loss_map.iter().flat_map(|map| [&map.picture, &map.numbers]));
-        names.extend(atlas.lanes.iter().flat_map(|lane| &lane.layers).flat_map(|layer| [&layer.rise, &layer.fall]));
+        let layers = atlas.lanes.iter().flat_map(|lane| &lane.layers);
+        let of_lamp = atlas.lamp.iter().flat_map(|lamp| &lamp.layers);
+        names.extend(layers.chain(of_lamp).flat_map(|layer| [&layer.rise, &layer.fall]));
     }
     match names.into_iter().find(|name| !is_plain_file_name(name)) {
         Some(name) => Err(format!("it names {name:?}, which is not a plain file name in its own folder")),
@@ -132,6 +141,15 @@ fn check_instances(manifest: &Manifest) -> Result<(), String> {
     }
 }
 
+/// A lamp is in every page or in none.
+fn check_lamp(manifest: &Manifest) -> Result<(), String> {
+    let differs = |atlas: &AtlasEntry| atlas.lamp.is_some() != manifest.lamp.is_some();
+    match manifest.atlases.iter().position(differs) {
+        Some(page) => Err(format!("it has a path of a lamp or times of one on atlas page {page}, and not both")),
+        None => Ok(()),
+    }
+}
+
 fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, ReadError> {
     let size = (atlas.width, atlas.height);
     if [size.0, size.1].iter().any(|edge| !(1..=MAX_PAGE_TEXELS).contains(edge)) {
@@ -140,16 +158,22 @@ fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, 
     }
     let mut lanes = Vec::with_capacity(atlas.lanes.len());
     for lane in &atlas.lanes {
-        let mut layers = Vec::with_capacity(lane.layers.len());
-        for layer in &lane.layers {
-            let rise = read_codes(&folder.join(&layer.rise), size, bits)?;
-            let fall = read_codes(&folder.join(&layer.fall), size, bits)?;
-            layers.push(LayerMaps { rise, fall });
-        }
+        let layers = read_layers(folder, &lane.layers, size, bits)?;
         lanes.push(LaneMaps { lane: Lane { offset_rad: lane.offset_deg.to_radians(), weight: lane.weight }, layers });
     }
+    let lamp = atlas.lamp.as_ref().map(|lamp| read_layers(folder, &lamp.layers, size, bits)).transpose()?;
     let ao = atlas.ao.as_ref().map(|name| read_grey(&folder.join(name), size)).transpose()?;
-    Ok(PageMaps { width: size.0, height: size.1, lanes, ao })
+    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ao })
+}
+
+fn read_layers(
+    folder: &Path,
+    entries: &[LayerEntry],
+    size: (u32, u32),
+    bits: Bits,
+) -> Result<Vec<LayerMaps>, ReadError> {
+    let codes = |name: &String| read_codes(&folder.join(name), size, bits);
+    entries.iter().map(|entry| Ok(LayerMaps { rise: codes(&entry.rise)?, fall: codes(&entry.fall)? })).collect()
 }
 
 /// Decodes a texture, refusing one of another size before its texels are allocated.
@@ -194,6 +218,12 @@ fn sun_path(entry: &PathEntry) -> Result<SunPath, PathError> {
     let mut path = SunPath::new(arcs, entry.angular_radius_deg.to_radians(), entry.duration_min)?;
     path.day = day(entry);
     Ok(path)
+}
+
+/// The lamp's path that a manifest describes.
+fn lamp_path(entry: &LampEntry) -> Result<LampPath, LampError> {
+    let key = |key: &LampKeyEntry| LampKey { t: key.t, position_m: DVec3::from_array(key.position) };
+    LampPath::new(entry.keys.iter().map(key).collect(), entry.radius_m, entry.duration_min)
 }
 
 fn arc(entry: &ArcEntry) -> SunArc {

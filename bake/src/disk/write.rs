@@ -3,9 +3,9 @@
 //! Everything goes into a folder beside the target, under a name that nothing reads; [`SetWriter::finish`] renames it into
 //! place. A bake that stops before that, for whatever reason, leaves the old set or none.
 
-use super::manifest::{AtlasEntry, LaneEntry, LayerEntry, Manifest};
+use super::manifest::{AtlasEntry, LampMapsEntry, LaneEntry, LayerEntry, Manifest};
 use super::read::MANIFEST_FILE;
-use crate::maps::{Bits, LayerMaps, PageMaps};
+use crate::maps::{Bits, LaneMaps, LayerMaps, PageMaps};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -147,22 +147,21 @@ impl SetWriter {
     /// Writes a page's textures and says what the manifest should say of them.
     pub fn write_page(&mut self, index: usize, maps: &PageMaps, bits: Bits) -> Result<AtlasEntry, WriteError> {
         let mut textures: Vec<(String, &[[u16; 4]])> = Vec::new();
-        let mut lanes = Vec::with_capacity(maps.lanes.len());
-        for (k, lane) in maps.lanes.iter().enumerate() {
-            let name = |l: usize, what: &str| format!("page{index}_lane{k}_layer{l}_{what}.png");
-            let entry = |l| LayerEntry { rise: name(l, "rise"), fall: name(l, "fall") };
-            let layers: Vec<LayerEntry> = (0..lane.layers.len()).map(entry).collect();
-            for (LayerMaps { rise, fall }, names) in lane.layers.iter().zip(&layers) {
-                textures.push((names.rise.clone(), rise));
-                textures.push((names.fall.clone(), fall));
-            }
-            lanes.push(LaneEntry { offset_deg: lane.lane.offset_rad.to_degrees(), weight: lane.lane.weight, layers });
-        }
+        let lanes = maps.lanes.iter().enumerate().map(|(k, LaneMaps { lane, layers })| LaneEntry {
+            offset_deg: lane.offset_rad.to_degrees(),
+            weight: lane.weight,
+            layers: named_layers(&format!("page{index}_lane{k}"), layers, &mut textures),
+        });
+        let lanes = lanes.collect();
+        let lamp = maps
+            .lamp
+            .as_ref()
+            .map(|layers| LampMapsEntry { layers: named_layers(&format!("page{index}_lamp"), layers, &mut textures) });
         let size = (maps.width, maps.height);
         let written: Result<Vec<u64>, WriteError> =
             textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits)).collect();
         self.bytes += written?.iter().sum::<u64>();
-        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, ao: None, bent: None, loss_map: None })
+        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, lamp, ao: None, bent: None, loss_map: None })
     }
 
     /// Bytes written so far.
@@ -241,6 +240,21 @@ fn write_into(
     Ok(length)
 }
 
+/// Names the textures of layers, and adds each with its name to `textures`.
+fn named_layers<'a>(
+    stem: &str,
+    layers: &'a [LayerMaps],
+    textures: &mut Vec<(String, &'a [[u16; 4]])>,
+) -> Vec<LayerEntry> {
+    let mut entries = Vec::with_capacity(layers.len());
+    for (l, LayerMaps { rise, fall }) in layers.iter().enumerate() {
+        let [rise_file, fall_file] = ["rise", "fall"].map(|what| format!("{stem}_layer{l}_{what}.png"));
+        textures.extend([(rise_file.clone(), rise.as_slice()), (fall_file.clone(), fall.as_slice())]);
+        entries.push(LayerEntry { rise: rise_file, fall: fall_file });
+    }
+    entries
+}
+
 /// Codes as PNG stores them: one byte, or two with the higher first.
 fn bytes_of(codes: &[[u16; 4]], bits: Bits) -> Vec<u8> {
     match bits {
@@ -264,14 +278,16 @@ fn make_readable(_folder: &Path) {}
 mod tests {
     use super::super::{manifest, read};
     use super::*;
-    use crate::maps::{Lane, LaneMaps};
+    use crate::maps::Lane;
 
     fn maps(bits: Bits) -> PageMaps {
         let mut layer = LayerMaps::unlit(6, bits);
         layer.rise[4] = [0, 1, bits.max_code() / 2, bits.max_code()];
         layer.fall[4] = [bits.max_code(), 2, 3, 0];
+        let mut of_lamp = layer.clone();
+        of_lamp.rise[2] = [7; 4];
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![layer.clone(), layer] }];
-        PageMaps { width: 3, height: 2, lanes, ao: None }
+        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ao: None }
     }
 
     fn manifest(atlas: AtlasEntry, bits: Bits) -> Manifest {
@@ -282,11 +298,23 @@ mod tests {
             source: manifest::SourceEntry { file: "x.glb".into(), sha256: String::new() },
             scene: manifest::SceneEntry { file: SCENE_FILE.into(), centre_m: [0.0; 3], texels_per_metre: 1.0 },
             path: None,
+            lamp: Some(lamp()),
             bits: bits.count(),
             atlases: vec![atlas],
             instances: Vec::new(),
             effects: Vec::new(),
             stats: manifest::Stats::default(),
+            error: manifest::ErrorEntry::default(),
+        }
+    }
+
+    fn lamp() -> manifest::LampEntry {
+        let keys = [(0.0, [0.0, 1.0, 2.0]), (1.0, [3.0, 1.0, 2.0])];
+        manifest::LampEntry {
+            keys: keys.map(|(t, position)| manifest::LampKeyEntry { t, position }).to_vec(),
+            radius_m: 0.25,
+            duration_min: 7.0,
+            stats: manifest::LampStats::default(),
             error: manifest::ErrorEntry::default(),
         }
     }
@@ -303,7 +331,10 @@ mod tests {
             let folder = tempfile::tempdir().unwrap();
             let target = folder.path().join("set");
             write(&target, false, bits).unwrap();
-            assert_eq!(read::read(&target).unwrap().pages, vec![maps(bits)]);
+            let set = read::read(&target).unwrap();
+            assert_eq!(set.pages, vec![maps(bits)]);
+            let lamp = set.lamp.unwrap();
+            assert_eq!((lamp.radius_m(), lamp.duration_min(), lamp.position_m(1.0).x), (0.25, 7.0, 3.0));
         }
     }
 
@@ -354,6 +385,28 @@ mod tests {
             let message = read::read(&target).unwrap_err().to_string();
             assert!(message.contains("not a plain file name"), "{message}");
         }
+    }
+
+    /// The set's manifest, changed, is refused with these words.
+    fn refused(change: impl FnOnce(&mut serde_json::Value), expected: &str) {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("set");
+        write(&target, false, Bits::Eight).unwrap();
+        let path = target.join(MANIFEST_FILE);
+        let mut json = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        change(&mut json);
+        std::fs::write(&path, json.to_string()).unwrap();
+        let message = read::read(&target).unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+
+    #[test]
+    fn a_lamp_that_a_set_holds_in_part_is_refused() {
+        refused(|json| drop(json["atlases"][0]["lamp"].take()), "atlas page 0");
+        refused(|json| drop(json["lamp"].take()), "atlas page 0");
+        refused(|json| json["lamp"]["keys"][1]["t"] = 0.5.into(), "ascend from 0 to 1");
+        refused(|json| json["lamp"]["keys"][1]["position"] = json["lamp"]["keys"][0]["position"].clone(), "same place");
+        refused(|json| json["atlases"][0]["lamp"]["layers"][0]["rise"] = "../x.png".into(), "not a plain file name");
     }
 
     #[test]

@@ -94,6 +94,8 @@ pub struct PageMaps {
     pub height: u32,
     /// Empty where there is no sun in the set.
     pub lanes: Vec<LaneMaps>,
+    /// When texels see the lamp, where the set has one: as many layers as the page's busiest texel needs, up to the cap.
+    pub lamp: Option<Vec<LayerMaps>>,
     /// Ambient occlusion, 0 (closed) to 65535 (open), where the set has it.
     pub ao: Option<Vec<u16>>,
 }

@@ -15,6 +15,8 @@
 use glam::DVec3;
 use serde::Deserialize;
 
+use crate::lamp::LampError;
+
 use super::{Compass, PathError, SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath, duration_min_of_angle};
 
 /// Most keys that a path may have: each pair costs a query of the scene for every texel.
@@ -32,9 +34,15 @@ pub enum KeyedError {
     /// Not JSON, or not of this form.
     #[error("the path file is not understood: {0}")]
     Json(String),
-    /// A lamp that moves.
-    #[error("the path file has '{0}': positions are not supported yet, only directions")]
+    /// A lamp's path where a sun's was asked for.
+    #[error("the path file has '{0}', and a sun's path has directions only: a lamp's has a 'position' in every key")]
     Positions(&'static str),
+    /// A sun's path where a lamp's was asked for.
+    #[error("the lamp's path file has {0}")]
+    Mixed(&'static str),
+    /// Places make no path of a lamp.
+    #[error(transparent)]
+    Lamp(#[from] LampError),
     /// Too few or too many keys.
     #[error("the path has {0} keys: give 2 to {MAX_KEYS}")]
     Count(usize),
@@ -115,7 +123,8 @@ pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
     if !north_deg.is_finite() {
         return Err(KeyedError::Size { name: "north", value: north_deg, bound: "that is finite" });
     }
-    let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &times(&file.keys)?)?;
+    let given: Vec<Option<f64>> = file.keys.iter().map(|key| key.t).collect();
+    let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &key_times(&given)?)?;
     let swept_rad: f64 = arcs.iter().map(|arc| arc.hour_angle_rad[1]).sum();
     let duration_min = file.duration_min.unwrap_or(duration_min_of_angle(swept_rad));
     let path = SunPath::new(arcs, angular_radius_deg.to_radians(), duration_min)?;
@@ -145,16 +154,16 @@ fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyedError>
     keys.iter().enumerate().map(one).collect()
 }
 
-/// Times of the keys, from 0 to 1.
-fn times(keys: &[Key]) -> Result<Vec<f64>, KeyedError> {
-    let last = keys.len() - 1;
-    if keys.iter().all(|key| key.t.is_none()) {
+/// Times of two keys or more, from 0 to 1, from those given.
+pub(crate) fn key_times(given: &[Option<f64>]) -> Result<Vec<f64>, KeyedError> {
+    let last = given.len() - 1;
+    if given.iter().all(Option::is_none) {
         return Ok((0..=last).map(|i| i as f64 / last as f64).collect());
     }
     let wrong = |index, problem: String| Err(KeyedError::Key { index, problem });
-    let mut times = Vec::with_capacity(keys.len());
-    for (index, key) in keys.iter().enumerate() {
-        let Some(t) = key.t else {
+    let mut times = Vec::with_capacity(given.len());
+    for (index, t) in given.iter().enumerate() {
+        let Some(t) = *t else {
             return wrong(index, "has no 't': give every key one, or none".to_owned());
         };
         let expected = if index == 0 { Some(0.0) } else { (index == last).then_some(1.0) };

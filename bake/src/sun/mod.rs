@@ -26,6 +26,7 @@ pub use clock::{ClockError, DAY_MIN, Date, DateError, YEARS, clock_text, parse_c
 pub use compass::Compass;
 pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day};
 pub use ephemeris::EphemerisError;
+pub(crate) use keyed::key_times;
 pub use keyed::{KeyedError, MAX_KEYS, parse_keyed};
 pub use light::{LightError, fixed_light};
 pub use path::{Day, PathError, SunPath};

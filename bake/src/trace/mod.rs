@@ -13,6 +13,7 @@
 
 mod cuts;
 mod direction;
+mod reach;
 
 pub use direction::Direction;
 
@@ -141,14 +142,19 @@ impl Tracer {
     /// Something solid along the direction, not always the nearest.
     pub fn occluder(&self, origin_m: DVec3, direction: &Direction) -> Option<Occluder> {
         let origin = self.shadow_start(origin_m, direction);
-        let ray = ray(origin, direction);
+        self.any(origin, direction, f32::INFINITY, |id| self.meet(origin, direction, id).is_some())
+    }
+
+    /// A triangle for which `hides` holds, of those whose boxes are met within `reach` (tracer space, as the origin).
+    fn any(&self, origin: DVec3, direction: &Direction, reach: f32, hides: impl Fn(usize) -> bool) -> Option<Occluder> {
+        let ray = Ray { tmax: reach, ..ray(origin, direction) };
         let mut found = None;
-        self.bvh.ray_traverse_miss(ray, |_, id| match self.meet(origin, direction, id) {
-            Some(_) => {
+        self.bvh.ray_traverse_miss(ray, |_, id| match hides(id) {
+            true => {
                 found = Some(Occluder(id as u32));
                 0.0
             }
-            None => f32::INFINITY,
+            false => f32::INFINITY,
         });
         found
     }

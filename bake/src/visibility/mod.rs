@@ -8,19 +8,21 @@
 mod bisect;
 mod exact;
 pub mod intervals;
+mod lamp;
 mod probe;
 mod rays;
 
 pub use bisect::BisectEngine;
 pub use exact::ExactEngine;
 pub use intervals::{IntervalTable, Intervals};
+pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;
 
 use crate::atlas::SurfacePoint;
 use rayon::prelude::*;
 
 /// A way to find lit intervals, along one path or along several side by side (the lanes of a disc). Implementations:
-/// [`ExactEngine`], [`RayEngine`] and [`BisectEngine`].
+/// [`ExactEngine`], [`RayEngine`] and [`BisectEngine`] for the sun, [`LampEngine`] and [`LampRays`] for a lamp.
 pub trait Engine: Sync {
     /// Its name with its parameters, as on the command line.
     fn name(&self) -> String;

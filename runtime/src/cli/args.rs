@@ -126,6 +126,12 @@ pub struct LookArgs {
     /// given: time grows with N, noise shrinks as 1/N.
     #[arg(long, value_name = "TECHNIQUE", value_parser = parse_technique, default_value = "baked")]
     pub technique: TechniqueChoice,
+    /// Which lights of the set are on.
+    ///
+    /// A visibility picture shows the sun's, or the lamp's where the lamp alone is on. A set's lamp is drawn as bright as
+    /// makes it readable.
+    #[arg(long, value_enum, default_value_t = LightChoice::Both)]
+    pub light: LightChoice,
     /// How stored times are filtered.
     #[arg(long, value_enum, default_value_t = FilterChoice::Bilinear)]
     pub filter: FilterChoice,
@@ -156,6 +162,17 @@ pub enum TechniqueChoice {
     Baked,
     /// By rays.
     Truth(Truth),
+}
+
+/// Which lights are on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LightChoice {
+    /// The sun alone.
+    Sun,
+    /// The lamp alone.
+    Lamp,
+    /// All that the set has.
+    Both,
 }
 
 /// How stored times are filtered.

@@ -1,6 +1,6 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
-use super::args::{LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
+use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use super::exit::Failure;
 use sunbake_runtime::gpu::{Gpu, GpuError};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
@@ -58,6 +58,18 @@ pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
     Ok(View::new(&camera, size, &stage.scene))
 }
 
+/// The moment `t` with the lights that are to be on.
+pub fn moment(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure> {
+    match look.light {
+        LightChoice::Both => Ok(stage.moment(t)),
+        LightChoice::Sun => Ok(Moment::new(stage.path.as_ref(), t)),
+        LightChoice::Lamp if stage.lamp.is_some() => Ok(Moment::new(None, t).with_lamp(stage.lamp_moment(t))),
+        LightChoice::Lamp => {
+            Err(Failure::usage("this set has no lamp: bake one with --lamp FILE, or leave --light lamp out"))
+        }
+    }
+}
+
 /// What a frame is made of.
 pub enum Picture {
     /// Linear light.
@@ -75,6 +87,9 @@ pub fn draw(
 ) -> Result<Picture, Failure> {
     Ok(match output {
         OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
+        OutputChoice::Visibility if moment.is_lit_by_lamp_alone() => {
+            Picture::Visibility(technique.lamp_visibility(shot, moment)?)
+        }
         OutputChoice::Visibility => Picture::Visibility(technique.visibility(shot, moment)?),
     })
 }

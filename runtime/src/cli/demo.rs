@@ -1,6 +1,6 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
-use super::args::{DemoArgs, FilterChoice, LookArgs, TechniqueChoice};
+use super::args::{DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
 use super::artist::{open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, make_folder, write_rgb};
@@ -116,6 +116,7 @@ fn look(args: &DemoArgs) -> LookArgs {
         technique: TechniqueChoice::Baked,
         filter: FilterChoice::Bilinear,
         supersample: SUPERSAMPLE,
+        light: LightChoice::Both,
         renderer: args.renderer,
         threads: args.threads,
     }
@@ -130,7 +131,7 @@ fn draw_column(technique: &mut dyn Technique, shot: &Shot, t: f64) -> Result<Col
     shot.hits();
     let start = Instant::now();
     let truth_seen = Truth::Soft { rays: TRUTH_RAYS }.visibility(shot, &moment)?;
-    let truth_light = lit_picture(shot, &moment, &truth_seen);
+    let truth_light = lit_picture(shot, &moment, &truth_seen, None);
     let truth_seconds = start.elapsed().as_secs_f64();
     let difference = visibility_difference(&baked_seen, &truth_seen);
     let pictures = [

@@ -1,13 +1,13 @@
 //! `sunplay frame`.
 
 use super::args::FrameArgs;
-use super::artist::{Picture, draw, open_gpu, set_threads, technique, view};
+use super::artist::{Picture, draw, moment, open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
 use super::when::label;
 use serde_json::json;
 use std::time::Instant;
-use sunbake_runtime::{Moment, Shot, Stage};
+use sunbake_runtime::{Shot, Stage};
 
 /// Draws one picture.
 pub fn run(args: &FrameArgs) -> Result<(), Failure> {
@@ -16,7 +16,7 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let stage = Stage::read(&args.set)?;
     let t = args.at.on(stage.path.as_ref())?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
-    let moment = Moment::new(stage.path.as_ref(), t);
+    let moment = moment(&stage, &args.look, t)?;
     let gpu = open_gpu(&args.look, args.manners.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
     let start = Instant::now();

@@ -1,7 +1,7 @@
 //! `sunplay frames`.
 
 use super::args::FramesArgs;
-use super::artist::{Picture, draw, open_gpu, set_threads, technique, view};
+use super::artist::{Picture, draw, moment, open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
 use super::terminal::Terminal;
@@ -9,7 +9,7 @@ use super::when::label;
 use serde_json::json;
 use std::time::Instant;
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
-use sunbake_runtime::{Moment, Raster, Shot, Stage};
+use sunbake_runtime::{Raster, Shot, Stage};
 
 /// Widest picture on the contact sheet, in pixels.
 const SHEET_PICTURE_WIDTH: u32 = 400;
@@ -34,7 +34,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     let mut drawn = Vec::new();
     for i in 0..args.count {
         let t = (f64::from(i) + 0.5) / f64::from(args.count);
-        let moment = Moment::new(stage.path.as_ref(), t);
+        let moment = moment(&stage, &args.look, t)?;
         let picture = match draw(technique.as_mut(), &shot, &moment, args.output)? {
             Picture::Color(light) => displayed(&light, args.look.supersample),
             Picture::Visibility(seen) => displayed_visibility(&seen, args.look.supersample),

@@ -38,7 +38,9 @@ impl When {
             Self::Clock(minutes) => minutes,
         };
         let Some(path) = path else {
-            return Err(Failure::usage("the sun does not rise in this set, so it has no clock: leave --at out"));
+            return Err(Failure::usage(
+                "this set has no sun, so it has no clock: give --at from 0 to 1, or leave it out",
+            ));
         };
         let (Some(start), Some(end)) = (path.clock_min(0.0), path.clock_min(1.0)) else {
             return Err(Failure::usage("this set's path is not a day, so it has no clock: give --at from 0 to 1"));

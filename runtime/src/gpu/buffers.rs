@@ -2,10 +2,12 @@
 
 use super::batch::{Vertices, wrap_code};
 use super::device::{Gpu, GpuError};
+use crate::View;
+use crate::light::Moment;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 use sunbake::scene::{Alpha, Material};
-use sunbake_shaders::{FrameUniform, MaterialUniform, Stream};
+use sunbake_shaders::{FrameUniform, LampUniform, MaterialUniform, Stream};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Uploads the streams that have vertices.
@@ -26,41 +28,77 @@ pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream,
     Ok(streams)
 }
 
-/// The frame's uniform buffer and the materials, with their layout and bindings.
-pub fn frame_bindings(gpu: &Gpu, stage: &Stage) -> (wgpu::BindGroupLayout, wgpu::Buffer, wgpu::BindGroup) {
-    let device = &gpu.device;
-    let materials: Vec<MaterialUniform> = stage.scene.materials.iter().map(material_uniform).collect();
-    let materials = device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("materials"),
-        contents: bytemuck::cast_slice(&materials),
-        usage: wgpu::BufferUsages::STORAGE,
-    });
-    let frame = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("frame"),
-        size: size_of::<FrameUniform>() as u64,
+/// The frame's uniform buffers and the materials, with their layout and bindings.
+pub struct FrameBindings {
+    /// The layout.
+    pub layout: wgpu::BindGroupLayout,
+    /// The bindings.
+    pub group: wgpu::BindGroup,
+    /// What is known of the lamp; none in a set without one.
+    pub lamp: Option<wgpu::Buffer>,
+    frame: wgpu::Buffer,
+}
+
+impl FrameBindings {
+    /// Uploads the materials.
+    pub fn new(gpu: &Gpu, stage: &Stage) -> Self {
+        let materials: Vec<MaterialUniform> = stage.scene.materials.iter().map(material_uniform).collect();
+        let materials = gpu.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("materials"),
+            contents: bytemuck::cast_slice(&materials),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        let frame = uniform_buffer(gpu, "frame", size_of::<FrameUniform>());
+        let lamp = stage.lamp.as_ref().map(|_| uniform_buffer(gpu, "lamp", size_of::<LampUniform>()));
+        let storage = wgpu::BufferBindingType::Storage { read_only: true };
+        let mut bindings = vec![(&frame, wgpu::BufferBindingType::Uniform), (&materials, storage)];
+        bindings.extend(lamp.iter().map(|lamp| (lamp, wgpu::BufferBindingType::Uniform)));
+        let (layout, group) = bound(gpu, &bindings);
+        Self { layout, group, lamp, frame }
+    }
+
+    /// Writes what a frame needs. A lamp that is not to be seen gives no light.
+    pub fn write(&self, gpu: &Gpu, view: &View, moment: &Moment) {
+        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&moment.uniform(view)));
+        if let Some(buffer) = &self.lamp {
+            let lamp = moment.lamp.map_or(bytemuck::Zeroable::zeroed(), |lamp| lamp.uniform());
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of::<LampUniform>(&lamp));
+        }
+    }
+}
+
+fn uniform_buffer(gpu: &Gpu, label: &str, size: usize) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size as u64,
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
-    });
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    };
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("frame"),
-        entries: &[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage)],
-    });
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("frame"),
-        layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: frame.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: materials.as_entire_binding() },
-        ],
-    });
-    (layout, frame, group)
+    })
+}
+
+/// Buffers at bindings 0, 1, and so on.
+fn bound(gpu: &Gpu, bindings: &[(&wgpu::Buffer, wgpu::BufferBindingType)]) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
+    let layout_entry =
+        |(binding, (_, ty)): (usize, &(&wgpu::Buffer, wgpu::BufferBindingType))| wgpu::BindGroupLayoutEntry {
+            binding: binding as u32,
+            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+            ty: wgpu::BindingType::Buffer { ty: *ty, has_dynamic_offset: false, min_binding_size: None },
+            count: None,
+        };
+    let entries: Vec<_> = bindings.iter().enumerate().map(layout_entry).collect();
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
+    let numbered = bindings.iter().enumerate();
+    let entries: Vec<_> = numbered
+        .map(|(binding, (buffer, _))| wgpu::BindGroupEntry {
+            binding: binding as u32,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    let descriptor = wgpu::BindGroupDescriptor { label: Some("frame"), layout: &layout, entries: &entries };
+    let group = gpu.device.create_bind_group(&descriptor);
+    (layout, group)
 }
 
 fn material_uniform(material: &Material) -> MaterialUniform {

@@ -15,6 +15,8 @@ pub struct Census {
     pub two_sided_pipelines: usize,
     /// Textures with stored times.
     pub time_textures: usize,
+    /// Bindings of a lamp: one where there is a lamp.
+    pub lamp_bindings: usize,
     /// Textures with ambient occlusion.
     pub ao_textures: usize,
     /// Base colour textures.

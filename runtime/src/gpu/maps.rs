@@ -42,7 +42,16 @@ impl PageTextures {
             bindings.push((2, openness(gpu, maps, ao), wgpu::TextureViewDimension::D2));
             bytes += maps.texel_count() * 2;
         }
-        let time_textures = if layers > 0 { 2 } else { 0 };
+        let lamp_layers = variant.lamp_layer_count;
+        if let Some(lamp) = maps.lamp.as_ref().filter(|_| lamp_layers > 0) {
+            GpuError::check_limit("the number of a page's layers", u64::from(lamp_layers), limit)?;
+            let rise = times(gpu, maps, bits, lamp_layers, lamp.iter().map(|layer| layer.rise.as_slice()));
+            let fall = times(gpu, maps, bits, lamp_layers, lamp.iter().map(|layer| layer.fall.as_slice()));
+            bindings.push((3, rise, wgpu::TextureViewDimension::D2Array));
+            bindings.push((4, fall, wgpu::TextureViewDimension::D2Array));
+            bytes += maps.texel_count() * u64::from(lamp_layers) * u64::from(bits.count());
+        }
+        let time_textures = 2 * (usize::from(layers > 0) + usize::from(lamp_layers > 0));
         let (layout, bind_group) = bound(gpu, &bindings).unzip();
         Ok(Self { variant, layout, bind_group, time_textures, bytes })
     }

@@ -14,6 +14,8 @@ pub enum Purpose {
     Lit,
     /// Visibility of the sun alone.
     Visibility,
+    /// Visibility of the lamp alone.
+    LampVisibility,
     /// The background.
     Sky,
 }
@@ -66,6 +68,11 @@ impl Program {
             Purpose::Visibility => (
                 sunbake_shaders::visibility_shader(key.surface, page, filter),
                 "visibility_fragment",
+                VISIBILITY_FORMAT,
+            ),
+            Purpose::LampVisibility => (
+                sunbake_shaders::lamp_visibility_shader(key.surface, page, filter),
+                "lamp_visibility_fragment",
                 VISIBILITY_FORMAT,
             ),
             _ => (sunbake_shaders::lit_shader(key.surface, page, filter), "lit_fragment", LIT_FORMAT),

@@ -1,7 +1,7 @@
 //! A stage on the GPU, and its frames.
 
 use super::batch::{Batch, BatchKey, batches};
-use super::buffers::{frame_bindings, upload_streams};
+use super::buffers::{FrameBindings, upload_streams};
 use super::census::Census;
 use super::device::{Gpu, GpuError};
 use super::maps::PageTextures;
@@ -24,6 +24,8 @@ pub enum Output {
     Lit,
     /// How much of the sun is seen.
     Visibility,
+    /// How much of the lamp is seen.
+    LampVisibility,
 }
 
 /// A stage on the GPU.
@@ -34,9 +36,7 @@ pub struct Renderer<'g> {
     streams: BTreeMap<Stream, wgpu::Buffer>,
     pages: Vec<PageTextures>,
     textures: BaseTextures,
-    frame_buffer: wgpu::Buffer,
-    frame_layout: wgpu::BindGroupLayout,
-    frame_group: wgpu::BindGroup,
+    frame: FrameBindings,
     /// Built when an output is first asked for. The depth programs serve both outputs.
     programs: BTreeMap<(Purpose, ProgramKey), Program>,
     targets: BTreeMap<Output, Target>,
@@ -61,7 +61,6 @@ impl<'g> Renderer<'g> {
         let page = |maps| PageTextures::new(gpu, maps, stage.bits, page_variant(maps, stage.bits, radius_rad));
         let pages = stage.pages.iter().map(page).collect::<Result<_, _>>()?;
         let keys = batches.iter().filter_map(|batch| batch.key.texture).collect();
-        let (frame_layout, frame_buffer, frame_group) = frame_bindings(gpu, stage);
         Ok(Self {
             gpu,
             filter,
@@ -69,9 +68,7 @@ impl<'g> Renderer<'g> {
             batches,
             pages,
             textures: BaseTextures::new(gpu, stage, &keys)?,
-            frame_buffer,
-            frame_layout,
-            frame_group,
+            frame: FrameBindings::new(gpu, stage),
             programs: BTreeMap::new(),
             targets: BTreeMap::new(),
         })
@@ -88,11 +85,16 @@ impl<'g> Renderer<'g> {
         self.draw(view, moment, Output::Visibility)
     }
 
+    /// How much of the lamp each pixel's surface sees at a moment.
+    pub fn lamp_visibility(&mut self, view: &View, moment: &Moment) -> Result<Vec<f32>, GpuError> {
+        self.draw(view, moment, Output::LampVisibility)
+    }
+
     fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
         let gpu = self.gpu;
         gpu.checked("building pipelines", || self.prepare(view.size, output))??;
         gpu.checked("drawing", || {
-            gpu.queue.write_buffer(&self.frame_buffer, 0, bytemuck::bytes_of(&moment.uniform(view)));
+            self.frame.write(gpu, view, moment);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.depth_pass(&mut encoder, output);
             self.surface_pass(&mut encoder, output);
@@ -106,6 +108,7 @@ impl<'g> Renderer<'g> {
         let (purpose, format) = match output {
             Output::Lit => (Purpose::Lit, LIT_FORMAT),
             Output::Visibility => (Purpose::Visibility, VISIBILITY_FORMAT),
+            Output::LampVisibility => (Purpose::LampVisibility, VISIBILITY_FORMAT),
         };
         if self.targets.get(&output).is_none_or(|target| target.size != size) {
             self.targets.insert(output, Target::new(self.gpu, size, format)?);
@@ -128,7 +131,7 @@ impl<'g> Renderer<'g> {
     }
 
     fn program(&self, purpose: Purpose, key: &ProgramKey) -> Program {
-        let frame = &self.frame_layout;
+        let frame = &self.frame.layout;
         let ProgramKey::Surface(key) = key else {
             return Program::sky(self.gpu, Layouts { frame, page: None, texture: None });
         };
@@ -154,7 +157,7 @@ impl<'g> Renderer<'g> {
             depth_stencil_attachment: Some(self.depth_attachment(output, wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.frame_group, &[]);
+        pass.set_bind_group(0, &self.frame.group, &[]);
         for batch in &self.batches {
             self.draw_batch(&mut pass, batch, Purpose::Depth, depth_key(&batch.key));
         }
@@ -174,8 +177,12 @@ impl<'g> Renderer<'g> {
             depth_stencil_attachment: Some(self.depth_attachment(output, wgpu::LoadOp::Load)),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.frame_group, &[]);
-        let purpose = if output == Output::Lit { Purpose::Lit } else { Purpose::Visibility };
+        pass.set_bind_group(0, &self.frame.group, &[]);
+        let purpose = match output {
+            Output::Lit => Purpose::Lit,
+            Output::Visibility => Purpose::Visibility,
+            Output::LampVisibility => Purpose::LampVisibility,
+        };
         for batch in &self.batches {
             self.draw_batch(&mut pass, batch, purpose, self.surface_key(&batch.key));
         }
@@ -228,6 +235,7 @@ impl<'g> Renderer<'g> {
             alpha_test_pipelines: surfaces().filter(|key| key.surface.is_cut).count(),
             two_sided_pipelines: surfaces().filter(|key| key.is_two_sided).count(),
             time_textures: self.pages.iter().map(|page| page.time_textures).sum(),
+            lamp_bindings: usize::from(self.frame.lamp.is_some()),
             ao_textures: self.pages.iter().filter(|page| page.variant.has_ao).count(),
             base_color_textures: self.textures.texture_count,
             vertex_buffers: self.streams.len(),

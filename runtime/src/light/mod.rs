@@ -11,9 +11,11 @@
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
 //! is measured: it is there so that the shadows under study fall in a believable light.
 
+mod lamp;
 mod sky;
 mod tone;
 
+pub use lamp::LampMoment;
 pub use tone::{codes_from_display, display_from_light};
 
 use crate::camera::View;
@@ -49,6 +51,8 @@ pub struct Moment {
     pub discs_per_radian: f32,
     /// The light.
     pub daylight: Daylight,
+    /// A lamp in the scene, if one is to be seen.
+    pub lamp: Option<LampMoment>,
 }
 
 /// Light and its colours, linear.
@@ -82,6 +86,7 @@ impl Moment {
                 sun_radius_rad: 0.0,
                 discs_per_radian: POINT,
                 daylight,
+                lamp: None,
             };
         };
         let direction = path.direction(t);
@@ -93,7 +98,18 @@ impl Moment {
             sun_radius_rad: radius as f32,
             discs_per_radian: if radius > 0.0 { (0.5 / radius) as f32 } else { POINT },
             daylight: Daylight::at_height(direction.y as f32),
+            lamp: None,
         }
+    }
+
+    /// The same moment with a lamp in the scene.
+    pub fn with_lamp(self, lamp: Option<LampMoment>) -> Self {
+        Self { lamp, ..self }
+    }
+
+    /// Whether there is a lamp and no sun.
+    pub fn is_lit_by_lamp_alone(&self) -> bool {
+        self.lamp.is_some() && self.sun_direction == Vec3::ZERO
     }
 
     /// What the GPU needs to know of a view at this moment.

@@ -6,7 +6,7 @@
 use super::Technique;
 use crate::gpu::GpuError;
 use crate::image::Raster;
-use crate::light::Moment;
+use crate::light::{LampMoment, Moment};
 use crate::playback::Page;
 use crate::shade::towards_eye;
 use crate::shot::Shot;
@@ -30,6 +30,15 @@ impl<'a> BakedCpu<'a> {
         Self { stage, pages, filter }
     }
 
+    fn lamp_seen(&self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &LampMoment) -> f32 {
+        let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
+        let triangle = hit.triangle as usize;
+        let front = self.stage.geometry.normal(triangle).as_vec3();
+        let face = towards_eye(front, front, shot.ray(pixel));
+        let way_m = lamp.position_m - self.stage.geometry.point(triangle, hit.barycentric).as_vec3();
+        self.pages[page as usize].lamp_visibility(page_uv, face, way_m, self.filter, lamp)
+    }
+
     fn seen(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {
         let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
         let front = self.stage.geometry.normal(hit.triangle as usize).as_vec3();
@@ -49,6 +58,16 @@ impl Technique for BakedCpu<'_> {
         Ok(Raster { size: shot.view.size, pixels: seen.collect() })
     }
 
+    fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &moment.lamp) {
+            (None, _) => 1.0,
+            (Some(_), None) => 0.0,
+            (Some(hit), Some(lamp)) => self.lamp_seen(shot, pixel, hit, lamp),
+        };
+        let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(seen).collect();
+        Ok(Raster { size: shot.view.size, pixels })
+    }
+
     fn bytes(&self) -> u64 {
         map_bytes(self.stage)
     }
@@ -57,7 +76,8 @@ impl Technique for BakedCpu<'_> {
 /// Bytes of the maps of a stage, as a GPU holds them.
 pub(super) fn map_bytes(stage: &Stage) -> u64 {
     let texel_bytes = |page: &sunbake::maps::PageMaps| {
-        let layers: usize = page.lanes.iter().map(|lane| lane.layers.len()).sum();
+        let of_lamp = page.lamp.as_ref().map_or(0, Vec::len);
+        let layers = of_lamp + page.lanes.iter().map(|lane| lane.layers.len()).sum::<usize>();
         let layer_bytes = u64::from(stage.bits.count()) / 8 * 4 * 2;
         layers as u64 * layer_bytes + if page.ao.is_some() { 2 } else { 0 }
     };

@@ -34,6 +34,10 @@ impl Technique for BakedGpu<'_> {
         Ok(Raster { size: shot.view.size, pixels: self.renderer.visibility(&shot.view, moment)? })
     }
 
+    fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.lamp_visibility(&shot.view, moment)? })
+    }
+
     fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
         Ok(Raster { size: shot.view.size, pixels: self.renderer.lit(&shot.view, moment)? })
     }

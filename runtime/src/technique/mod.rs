@@ -1,4 +1,4 @@
-//! Ways to know how much of the sun a pixel's surface sees.
+//! Ways to know how much of the sun, or of a lamp, a pixel's surface sees.
 //!
 //! All answer with the same image, visibility from 0 to 1 where pixels without a surface read 1, so all are compared
 //! alike. What each costs and where it is wrong is said in its own file.
@@ -26,10 +26,14 @@ pub trait Technique {
     /// How much of the sun the surface at each pixel's centre sees.
     fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError>;
 
+    /// How much of the lamp the surface at each pixel's centre sees; nothing where the moment has none.
+    fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError>;
+
     /// The picture, in linear light.
     fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
         let visibility = self.visibility(shot, moment)?;
-        Ok(shade::lit_picture(shot, moment, &visibility))
+        let of_lamp = moment.lamp.map(|_| self.lamp_visibility(shot, moment)).transpose()?;
+        Ok(shade::lit_picture(shot, moment, &visibility, of_lamp.as_ref()))
     }
 
     /// Bytes it keeps from frame to frame, beyond the scene itself.

@@ -6,6 +6,9 @@
 //!   pixel; it answers with the share that reaches the sun. Only parts of the disc above the world's horizon and before
 //!   the surface's plane count.
 //!
+//! A lamp is asked alike: one ray to its centre, or many over the disc that its ball shows to the point, and a ray ends at
+//! the lamp.
+//!
 //! The two are never mixed: a hard technique is right or wrong about the one, a soft technique about the other. Nothing is
 //! kept between frames. Soft truth is wrong by its sampling: with N rays a half-covered disc reads right to about 1/N.
 
@@ -37,13 +40,23 @@ impl Truth {
     /// Rays over the disc, unless told otherwise.
     pub const DEFAULT_RAYS: u32 = 64;
 
+    fn lamp_seen(self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &Ball) -> f32 {
+        let tracer = shot.stage.tracer();
+        let Seat { face, point_m, origin_m } = Seat::new(shot, pixel, hit);
+        let reaches =
+            |lamp_m: DVec3| face.dot(lamp_m - point_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
+        match self {
+            Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
+            Self::Soft { rays } => {
+                let turn = turn_of_pixel(pixel);
+                (0..rays).filter(|&i| reaches(lamp.point(point_m, i, rays, turn))).count() as f32 / rays as f32
+            }
+        }
+    }
+
     fn seen(self, shot: &Shot, pixel: usize, hit: &Hit, sun: &Sun) -> f32 {
         let tracer = shot.stage.tracer();
-        let triangle = hit.triangle as usize;
-        let front = shot.stage.geometry.normal(triangle);
-        let face = if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front };
-        let point_m = shot.stage.geometry.point(triangle, hit.barycentric);
-        let origin_m = tracer.lift(point_m, face, hit.triangle);
+        let Seat { face, origin_m, .. } = Seat::new(shot, pixel, hit);
         let reaches = |direction: DVec3| {
             direction.y > 0.0 && face.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
         };
@@ -54,6 +67,23 @@ impl Truth {
                 (0..rays).filter(|&i| reaches(sun.direction(i, rays, turn))).count() as f32 / rays as f32
             }
         }
+    }
+}
+
+/// What a pixel shows, as the start of rays: the side that the eye is on.
+struct Seat {
+    face: DVec3,
+    point_m: DVec3,
+    origin_m: DVec3,
+}
+
+impl Seat {
+    fn new(shot: &Shot, pixel: usize, hit: &Hit) -> Self {
+        let triangle = hit.triangle as usize;
+        let front = shot.stage.geometry.normal(triangle);
+        let face = if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front };
+        let point_m = shot.stage.geometry.point(triangle, hit.barycentric);
+        Self { face, point_m, origin_m: shot.stage.tracer().lift(point_m, face, hit.triangle) }
     }
 }
 
@@ -72,6 +102,18 @@ impl Technique for Truth {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
             (Some(hit), Some(sun)) => self.seen(shot, pixel, hit, sun),
+        };
+        let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
+        Ok(Raster { size: shot.view.size, pixels })
+    }
+
+    fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        let lamp =
+            moment.lamp.map(|lamp| Ball { centre_m: lamp.position_m.as_dvec3(), radius_m: f64::from(lamp.radius_m) });
+        let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &lamp) {
+            (None, _) => 1.0,
+            (Some(_), None) => 0.0,
+            (Some(hit), Some(lamp)) => self.lamp_seen(shot, pixel, hit, lamp),
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -101,6 +143,23 @@ impl Sun {
         let (sin, cos) = (f64::from(i) * GOLDEN_ANGLE_RAD + turn).sin_cos();
         let across = self.across[0] * cos + self.across[1] * sin;
         (self.centre * from_centre + across * (1.0 - from_centre * from_centre).max(0.0).sqrt()).normalize()
+    }
+}
+
+/// A lamp.
+struct Ball {
+    centre_m: DVec3,
+    radius_m: f64,
+}
+
+impl Ball {
+    /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the ball's disc as seen from a point.
+    fn point(&self, from_m: DVec3, i: u32, count: u32, turn: f64) -> DVec3 {
+        let Some(way) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };
+        let (across, up) = way.any_orthonormal_pair();
+        let (sin, cos) = (f64::from(i) * GOLDEN_ANGLE_RAD + turn).sin_cos();
+        let from_centre_m = self.radius_m * ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
+        self.centre_m + (across * cos + up * sin) * from_centre_m
     }
 }
 

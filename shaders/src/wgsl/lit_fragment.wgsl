@@ -9,5 +9,7 @@ fn lit_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     let normal = towards_eye(normalize(varyings.shading_normal.xyz), varyings, ray);
     let visibility = sun_visibility(varyings.page_uv, face);
     let light = shade(material, base_color.rgb, normal, visibility, openness(varyings.page_uv));
-    return vec4<f32>(light, 1.0);
+    let way_m = way_to_lamp(varyings, ray);
+    let of_lamp = lamp_shade(material, base_color.rgb, normal, way_m, lamp_visibility(varyings.page_uv, face, way_m));
+    return vec4<f32>(light + of_lamp, 1.0);
 }

@@ -47,7 +47,7 @@ fn bad_files_say_what_and_where() {
         (r#"{"direction": [1,-1,0]}, {"direction": [-1,-1,0]}"#.to_owned(), "below the horizon"),
         (format!(r#"{up}, {{"direction": [1,0,0], "colour": 3}}"#), "unknown field `colour`"),
         (format!(r#"{up}, {{"direction": [1,0]}}"#), "line 1"),
-        (format!(r#"{up}, {{"position": [1,0,0]}}"#), "positions are not supported yet"),
+        (format!(r#"{up}, {{"position": [1,0,0]}}"#), "a lamp's has a 'position' in every key"),
         (format!(r#"{up}, {{"direction": [1e999,0,0]}}"#), "number out of range"),
     ] {
         let message = keyed(&keys).expect_err("refused").to_string();
@@ -65,7 +65,7 @@ fn bad_sizes_and_positions_are_refused_by_name() {
         (r#""angular_radius_deg": -1"#, "angular_radius_deg is -1"),
         (r#""angular_radius_deg": 90"#, "angular_radius_deg is 90"),
         (r#""duration_min": 0"#, "duration_min is 0"),
-        (r#""positions": [[0,1,0]]"#, "'positions': positions are not supported yet"),
+        (r#""positions": [[0,1,0]]"#, "a lamp's has a 'position' in every key"),
     ] {
         let message = parse_keyed(&format!("{{{field}, {keys}}}"), 0.0).expect_err("refused").to_string();
         assert!(message.contains(told), "{message}");

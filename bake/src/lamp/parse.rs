@@ -1,0 +1,125 @@
+//! A lamp's path from a file of keys: places at times, joined by straight lines.
+//!
+//! ```json
+//! { "radius_m": 0.05, "duration_min": 10,
+//!   "keys": [ { "t": 0, "position": [0, 2, 0] },
+//!             { "t": 0.25, "position": [3, 2, 0] },
+//!             { "t": 1, "position": [3, 2, -4] } ] }
+//! ```
+//!
+//! Positions are world space, in metres. `t` runs from 0 to 1; if no key has one, keys are evenly spaced. Without
+//! `radius_m` the lamp is a bulb of 5 cm; without `duration_min` the path takes a minute.
+
+use super::{LampKey, LampPath};
+use crate::sun::{KeyedError, MAX_KEYS, key_times};
+use glam::DVec3;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+/// Radius of a lamp that has none of its own.
+const RADIUS_M: f64 = 0.05;
+/// Minutes of a path that has none of its own.
+const DURATION_MIN: f64 = 1.0;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    radius_m: Option<f64>,
+    duration_min: Option<f64>,
+    #[serde(default)]
+    keys: Vec<Key>,
+    angular_radius_deg: Option<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Key {
+    t: Option<f64>,
+    position: Option<[f64; 3]>,
+    direction: Option<IgnoredAny>,
+    azimuth_deg: Option<IgnoredAny>,
+    elevation_deg: Option<IgnoredAny>,
+}
+
+/// Whether a file of keys means a lamp: some key has a position, or the lamp a radius. What else it has is for
+/// [`parse_lamp`] to refuse.
+pub fn is_lamp(json: &str) -> bool {
+    let Ok(file) = serde_json::from_str::<serde_json::Value>(json) else { return false };
+    let has_position = |key: &serde_json::Value| key.get("position").is_some();
+    file.get("radius_m").is_some() || file["keys"].as_array().is_some_and(|keys| keys.iter().any(has_position))
+}
+
+/// Reads the path of a lamp, world space.
+pub fn parse_lamp(json: &str) -> Result<LampPath, KeyedError> {
+    let file: File = serde_json::from_str(json).map_err(|error| KeyedError::Json(error.to_string()))?;
+    if file.angular_radius_deg.is_some() {
+        return Err(KeyedError::Mixed("'angular_radius_deg', which a sun has: give a lamp 'radius_m'"));
+    }
+    if !(2..=MAX_KEYS).contains(&file.keys.len()) {
+        return Err(KeyedError::Count(file.keys.len()));
+    }
+    let given: Vec<Option<f64>> = file.keys.iter().map(|key| key.t).collect();
+    let times = key_times(&given)?;
+    let keys: Result<Vec<LampKey>, KeyedError> =
+        file.keys.iter().enumerate().map(|(index, key)| lamp_key(index, key, times[index])).collect();
+    let (radius_m, duration_min) = (file.radius_m.unwrap_or(RADIUS_M), file.duration_min.unwrap_or(DURATION_MIN));
+    Ok(LampPath::new(keys?, radius_m, duration_min)?)
+}
+
+fn lamp_key(index: usize, key: &Key, t: f64) -> Result<LampKey, KeyedError> {
+    let wrong = |problem: &str| KeyedError::Key { index, problem: problem.to_owned() };
+    if key.direction.is_some() || key.azimuth_deg.is_some() || key.elevation_deg.is_some() {
+        return Err(wrong("has a direction, which a lamp has not: give every key a 'position'"));
+    }
+    let position = key.position.ok_or_else(|| wrong("has no 'position': give metres of the scene, as [0, 2, 0]"))?;
+    Ok(LampKey { t, position_m: DVec3::from_array(position) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TWO: &str = r#"{"keys": [{"position": [0, 1, 2]}, {"position": [3, 1, 2]}]}"#;
+
+    #[test]
+    fn keys_make_a_path() {
+        let path = parse_lamp(TWO).unwrap();
+        assert_eq!((path.radius_m(), path.duration_min()), (RADIUS_M, DURATION_MIN));
+        assert_eq!(path.position_m(0.5), DVec3::new(1.5, 1.0, 2.0));
+        let timed = r#"{"radius_m": 0, "duration_min": 7, "keys": [
+            {"t": 0, "position": [0, 0, 0]}, {"t": 0.25, "position": [1, 0, 0]}, {"t": 1, "position": [1, 3, 0]}]}"#;
+        let path = parse_lamp(timed).unwrap();
+        assert_eq!((path.radius_m(), path.duration_min(), path.keys()[1].t), (0.0, 7.0, 0.25));
+    }
+
+    #[test]
+    fn a_file_of_places_is_told_from_one_of_directions() {
+        assert!(is_lamp(TWO) && is_lamp(r#"{"radius_m": 1}"#));
+        for sun in ["", "[]", "{}", "7", r#"{"keys": 3}"#, r#"{"keys": [{"direction": [0, 1, 0]}]}"#] {
+            assert!(!is_lamp(sun), "{sun}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_lamp_is_refused_and_says_what_to_give() {
+        for (json, expected) in [
+            (r#"{"keys": [{"position": [0, 1, 2]}]}"#, "give 2 to"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"direction": [0, 1, 0]}]}"#, "give every key a 'position'"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"azimuth_deg": 9, "position": [0, 1, 0]}]}"#, "a direction"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"t": 1}]}"#, "give every key one, or none"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {}]}"#, "has no 'position'"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 2]}]}"#, "stands still"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 1e10]}]}"#, "-1e9 to 1e9"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 1e999]}]}"#, "not understood"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1]}]}"#, "not understood"),
+            (r#"{"keys": [{"position": [0, 1, 2], "t": 0.5}, {"position": [0, 1, 9], "t": 1}]}"#, "first is at 0"),
+            (r#"{"radius_m": -1, "keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 9]}]}"#, "radius_m is -1"),
+            (r#"{"duration_min": 0, "keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 9]}]}"#, "above 0"),
+            (r#"{"angular_radius_deg": 1, "keys": [{"position": [0, 1, 2]}]}"#, "give a lamp 'radius_m'"),
+            (r#"{"positions": [[0, 1, 2], [0, 1, 9]]}"#, "positions"),
+        ] {
+            let message = parse_lamp(json).unwrap_err().to_string();
+            assert!(message.contains(expected), "{json}: {message}");
+        }
+    }
+}

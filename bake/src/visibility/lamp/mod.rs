@@ -1,0 +1,166 @@
+//! When points see a lamp that moves through the scene.
+//!
+//! From a point, all rays to the lamp on one straight segment of its path lie in one triangle. One walk of the hierarchy
+//! against that triangle (`walk.rs`) finds every occluder of the segment, and each hides a span of it in closed form, ended
+//! by the lamp's own passage through the occluder's plane (`hide.rs`), less its holes (`holes.rs`). The walk passes over
+//! what could hide only what is hidden already, and stops when nothing is open (`open.rs`). The occluders of the point
+//! before are tried first (`seeds.rs`).
+//!
+//! A lamp has no horizon. The surface's plane is a gate that is linear in s too; a double-sided surface is asked from
+//! whichever side the lamp is on. [`LampRays`] asks evenly spaced places of the lamp instead, to compare with.
+
+mod hide;
+mod holes;
+mod open;
+mod rays;
+mod seeds;
+mod span;
+mod walk;
+
+pub use rays::LampRays;
+
+use super::{Engine, IntervalTable, Intervals, Session, Work};
+use crate::atlas::SurfacePoint;
+use crate::lamp::{LampPath, LampSegment};
+use crate::trace::Tracer;
+use glam::DVec3;
+use hide::Leg;
+use holes::{Parts, Pierced};
+use open::Open;
+use seeds::Seeds;
+use span::{Span, common, not_negative};
+use walk::{Fan, Opened, Tree};
+
+/// Lit intervals of a lamp in closed form.
+pub struct LampEngine<'a> {
+    tracer: &'a Tracer,
+    tree: Tree,
+    segments: Vec<LampSegment>,
+}
+
+impl<'a> LampEngine<'a> {
+    /// Prepares a path, bake space.
+    pub fn new(tracer: &'a Tracer, path: &LampPath) -> Self {
+        Self { tracer, tree: Tree::new(tracer), segments: path.segments().collect() }
+    }
+}
+
+impl Engine for LampEngine<'_> {
+    fn name(&self) -> String {
+        "exact".into()
+    }
+
+    fn lane_count(&self) -> usize {
+        1
+    }
+
+    fn session(&self) -> Box<dyn Session + '_> {
+        let seeds = self.segments.iter().map(|_| Default::default()).collect();
+        Box::new(LampSession { engine: self, seeds, work: Work::default(), stack: Vec::new() })
+    }
+}
+
+struct LampSession<'a> {
+    engine: &'a LampEngine<'a>,
+    /// For each segment, one for each side of a surface.
+    seeds: Vec<[Seeds; 2]>,
+    work: Work,
+    stack: Vec<u32>,
+}
+
+impl Session for LampSession<'_> {
+    fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
+        for point in points {
+            let mut lit = Vec::new();
+            for index in 0..self.engine.segments.len() {
+                for side in 0..=usize::from(point.is_double_sided) {
+                    self.lit_on(index, point, side, &mut lit);
+                }
+            }
+            answers.push(&Intervals::from_unsorted(lit));
+        }
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl LampSession<'_> {
+    /// Adds when the lamp is seen on a segment from one side of a point.
+    fn lit_on(&mut self, index: usize, point: &SurfacePoint, side: usize, lit: &mut Vec<[f64; 2]>) {
+        let LampEngine { tracer, segments, .. } = self.engine;
+        let segment = &segments[index];
+        let normal = if side == 0 { point.normal } else { -point.normal };
+        let mut open = Open::new(before_plane(segment, point.position_m, normal));
+        if open.is_empty() {
+            return;
+        }
+        let scale = tracer.tracer_from_bake();
+        let origin = tracer.lift(point.position_m, normal, point.triangle) * scale;
+        let leg = Leg { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
+        self.close(index, side, origin, &leg, &mut open);
+        lit.extend(open.as_slice().iter().map(|span| span.map(|s| t_of(segment, s))));
+    }
+
+    /// Closes all that is hidden.
+    fn close(&mut self, index: usize, side: usize, origin: DVec3, leg: &Leg, open: &mut Open) {
+        let tracer = self.engine.tracer;
+        let seeds = &mut self.seeds[index][side];
+        seeds.next_point();
+        self.work.triangles += seeds.try_all(|id| (close_with(tracer, id, origin, leg, open), open.is_empty()));
+        if open.is_empty() {
+            return;
+        }
+        let mut fan = Fan::new(origin, leg, open);
+        self.engine.tree.start(&mut self.stack);
+        while let Opened::Leaf(ids) = self.engine.tree.next_leaf(&fan, &mut self.stack, &mut self.work.nodes) {
+            self.work.triangles += ids.len() as u64;
+            let mut is_useful = false;
+            for &id in ids.iter().filter(|&&id| close_with(tracer, id, origin, leg, open)) {
+                seeds.add(id);
+                is_useful = true;
+            }
+            if open.is_empty() {
+                return;
+            }
+            if is_useful {
+                fan.want(open);
+            }
+        }
+    }
+}
+
+/// Where on a segment the lamp is before a side of a plane.
+fn before_plane(segment: &LampSegment, position_m: DVec3, normal: DVec3) -> Option<Span> {
+    let heights = segment.ends_m.map(|end| normal.dot(end - position_m));
+    not_negative(heights).filter(|_| heights.iter().any(|height| *height > 0.0))
+}
+
+/// Path time on a segment; its ends are exactly the segment's.
+fn t_of(segment: &LampSegment, s: f64) -> f64 {
+    let [start, end] = segment.t;
+    if s == 1.0 { end } else { start + s * (end - start) }
+}
+
+/// Closes what a triangle hides; whether that was anything.
+fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut Open) -> bool {
+    let corners = tracer.corners()[id as usize].map(|corner| corner.as_dvec3() - origin);
+    let hidden = leg.hidden_by(corners);
+    if hidden.is_empty() {
+        return false;
+    }
+    match tracer.cut(id) {
+        None => hidden.iter().fold(false, |any, &span| open.close(span) | any),
+        Some(cut) => {
+            let pierced = Pierced::new(cut, leg, corners);
+            let mut solid = Parts::new();
+            for &span in &hidden {
+                open.as_slice().iter().filter_map(|&still| common(span, still)).for_each(|part| {
+                    pierced.solid_parts(part, &mut solid);
+                });
+            }
+            solid.iter().fold(false, |any, &span| open.close(span) | any)
+        }
+    }
+}
