@@ -117,3 +117,31 @@ fn an_engine_that_claims_too_much_is_caught() {
         assert_eq!(honest.complaint(&here, &path, &point, &truth), None);
     }
 }
+
+/// B13: the ray's way over a wide leaf clips the corner of a single solid texel for a tenth of a second of the day.
+#[test]
+fn a_clipped_corner_of_a_masks_texel_is_found() {
+    // A leaf of 8 by 8 texels, one of them solid, turned by 45 degrees: its corner points to -Z, at x = 0.3.
+    let texels = (0..64).map(|i| [90, 160, 60, if i == 4 * 8 + 4 { 255 } else { 0 }]).collect();
+    let (builder, image) = SceneBuilder::new().soup(&a_floor()).image(8, 8, texels);
+    let corners = [[-8.0, -8.0], [-8.0, 8.0], [8.0, 8.0], [8.0, -8.0f32]];
+    let uv = |[x, z]: [f32; 2]| Vec2::new((x - 0.3) + z, z - (x - 0.3)) / 8.0 + 0.5;
+    let leaf = Mesh {
+        positions: corners.iter().map(|[x, z]| Vec3::new(*x, 1.0, *z)).collect(),
+        texcoords: [Some(corners.iter().map(|corner| uv(*corner)).collect()), None],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        ..Mesh::default()
+    };
+    let texture = TextureRef { image, texcoord: 0, image_from_texcoord: glam::Mat3::IDENTITY, wrap: [Wrap::Clamp; 2] };
+    let here = Traced::new(builder.mesh_of(leaf, cut(texture), &[DMat4::IDENTITY]).build());
+    let path = over_the_top(DVec3::X);
+    for into_m in [1e-2, 1e-3, 1e-4, 1e-5] {
+        let mut point = here.point_at(DVec3::new(0.0, 0.0, into_m), FLOOR);
+        // From just there, wherever shadow rays start.
+        point.position_m += DVec3::new(0.0, 0.0, into_m) - here.start(&point).with_x(0.0).with_y(0.0);
+        let dark_t = 1.0 - EXACT.lit(&here, &path, &point).lit_length();
+        // Twice as wide as deep, seen at a slant of 0.3 to 1.
+        let expected_t = 2.0 * into_m / 1.09 / std::f64::consts::PI;
+        assert!((dark_t / expected_t - 1.0).abs() < 0.1, "{into_m} m into the corner: {dark_t}, not {expected_t}");
+    }
+}

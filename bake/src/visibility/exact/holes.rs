@@ -15,8 +15,8 @@ use smallvec::SmallVec;
 
 /// Smallest step along the curve, in diamond angle: some tens of microseconds of a day.
 const LEAST_STEP: f64 = 1e-9;
-/// Most steps that one triangle is followed for; they grow where there would be more.
-const MOST_STEPS: f64 = 65_536.0;
+/// After so many steps on one triangle the rest is covered in as many: texture coordinates may tile without bound.
+const MOST_STEPS: u32 = 65_536;
 
 /// Spans found; few, as a rule.
 pub(super) type Parts = SmallVec<[[f64; 2]; 8]>;
@@ -54,7 +54,8 @@ impl<'a> Pierced<'a> {
 
     #[inline(always)]
     fn follow<S: Simd>(&self, simd: S, [start, end]: [f64; 2], parts: &mut Parts) {
-        let least_step = ((end - start) / MOST_STEPS).max(LEAST_STEP);
+        let mut least_step = LEAST_STEP;
+        let mut steps = 0;
         let mut at = start;
         while at < end {
             let texel = self.texel((at + least_step).min(0.5 * (at + end)));
@@ -66,6 +67,10 @@ impl<'a> Pierced<'a> {
                 None => self.solid_in_texel(texel, [at, next], parts),
             }
             at = next;
+            steps += 1;
+            if steps == MOST_STEPS {
+                least_step = ((end - at) / f64::from(MOST_STEPS)).max(LEAST_STEP);
+            }
         }
     }
 
