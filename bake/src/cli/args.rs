@@ -162,8 +162,7 @@ pub struct CostArgs {
     pub lanes: usize,
     /// How to find the times: exact, rays:N or bisect:N, N from 2 to 65536. [default: exact]
     ///
-    /// exact finds every edge in closed form and misses nothing; it is also the fastest. The others are there to compare:
-    /// rays:N asks N suns; edges are off by half a step at most, 1.8 minutes of a summer day at 256. bisect:N asks N suns
+    /// exact finds every edge in closed form and misses nothing. The others are there to compare: rays:N asks N suns; edges are off by half a step at most, 1.8 minutes of a summer day at 256. bisect:N asks N suns
     /// and then halves every change between two of them until it is known to --edge-seconds. Both may miss what is shorter
     /// than a step. Time grows with N.
     #[arg(long, value_name = "ENGINE", value_parser = parse_engine)]
