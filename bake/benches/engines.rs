@@ -7,14 +7,16 @@
 //!
 //! Options after `--`: `texels=1000000 runs=64 scene=NAME only=engines|scaling|growth`.
 
+mod common;
+
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 use sunbake::atlas::{self, AtlasSettings, Density, SurfacePoint};
 use sunbake::maps::Lane;
 use sunbake::scene::{Geometry, LoadLimits, Mesh, Scene, load};
-use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
+use sunbake::sun::{DayOutcome, SunPath, day};
 use sunbake::trace::Tracer;
 use sunbake::visibility::{BisectEngine, Engine, ExactEngine, IntervalTable, RayEngine, Work};
 
@@ -31,7 +33,7 @@ const RUN: usize = 1024;
 
 fn main() {
     let options = Options::from_arguments();
-    let scenes: Vec<Subject> = files().iter().filter_map(|file| Subject::new(file, &options)).collect();
+    let scenes: Vec<Subject> = common::scenes(&SHARED).iter().filter_map(|file| Subject::new(file, &options)).collect();
     if options.wants("engines") {
         engines(&scenes);
     }
@@ -66,15 +68,6 @@ impl Options {
     fn wants(&self, part: &str) -> bool {
         self.only.as_deref().is_none_or(|only| only == part)
     }
-}
-
-fn files() -> Vec<PathBuf> {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join("scenes");
-    let (present, absent): (Vec<_>, Vec<_>) = SHARED.iter().map(|name| folder.join(name)).partition(|f| f.is_file());
-    absent.iter().for_each(|file| println!("not on this machine: {}", file.display()));
-    std::iter::once(own).chain(present).collect()
 }
 
 /// A scene, and the points that engines are asked about.
@@ -287,15 +280,7 @@ fn density_for(scene: &Scene, geometry: &Geometry, texels: f64) -> Density {
 }
 
 fn summer_day() -> SunPath {
-    let request = DayRequest {
-        latitude_deg: 35.0,
-        longitude_deg: -116.0,
-        date: "2026-06-21".parse().expect("a date"),
-        utc_offset_h: Some(-7.0),
-        north_deg: 0.0,
-        window: None,
-    };
-    match day(&request) {
+    match day(&common::summer_day()) {
         Ok(DayOutcome::Path(path)) => path,
         other => panic!("the sun rises there: {other:?}"),
     }

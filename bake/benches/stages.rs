@@ -4,10 +4,11 @@
 //! repository). Arguments after `--` set the page size, and for another engine than the exact one the number of suns:
 //! `cargo bench -p sunbake --bench stages -- 1024 256`, or `-- 1024 64 bisect`.
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 use sunbake::progress::Silent;
 use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
-use sunbake::sun::DayRequest;
 
 const SHARED: [&str; 3] =
     ["truck_town/truck_town.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
@@ -35,32 +36,16 @@ fn main() {
         "ktexels/s",
         "Mrays/s"
     );
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
-    for file in std::iter::once(own).chain(shared_scenes()) {
+    for file in common::scenes(&SHARED) {
         row(&file, page_size as u32, engine);
     }
-}
-
-fn shared_scenes() -> Vec<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join("scenes");
-    let (present, absent): (Vec<_>, Vec<_>) = SHARED.iter().map(|name| folder.join(name)).partition(|f| f.is_file());
-    absent.iter().for_each(|file| println!("not on this machine: {}", file.display()));
-    present
 }
 
 fn row(file: &Path, page_size_texels: u32, engine: EngineChoice) {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let target = std::env::temp_dir().join(format!("sunbake-bench-{}-{name}", std::process::id()));
-    let day = DayRequest {
-        latitude_deg: 35.0,
-        longitude_deg: -116.0,
-        date: "2026-06-21".parse().expect("a date"),
-        utc_offset_h: Some(-7.0),
-        north_deg: 0.0,
-        window: None,
-    };
-    let settings = BakeSettings { page_size_texels, engine, ..BakeSettings::standard(SunRequest::Day(day)) };
+    let settings =
+        BakeSettings { page_size_texels, engine, ..BakeSettings::standard(SunRequest::Day(common::summer_day())) };
     match sunbake::bake(file, &target, true, &settings, &Silent) {
         Err(error) => println!("{name:<20} {error}"),
         Ok(report) => {

@@ -64,7 +64,7 @@ pub enum SunRequest {
 /// How lit intervals are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EngineChoice {
-    /// In closed form: every edge to a microsecond or so, and nothing missed.
+    /// In closed form: every edge to a billionth of the path, and nothing missed.
     Exact,
     /// This many evenly spaced suns, 2 to 65536: edges are off by half a step at most, and what is thinner than a step
     /// may be missed. Time grows with the number.

@@ -1,8 +1,8 @@
 //! Eight boxes at once against the suns of an arc. Conservative, in `f32`.
 //!
-//! From one point the suns of an arc lie on a cone about the frame's z axis. In the frame, a box spans heights z and distances rho from the axis; it meets the cone of declination d
-//! only if `z cos d = rho sin d` somewhere in those spans, and only at hour angles within those of its corners as seen
-//! along the axis. Lanes widen the cone to a shell between the least and the greatest declination.
+//! From one point the suns of an arc lie on a cone about the frame's z axis. In the frame, a box spans heights z and
+//! distances rho from the axis; it meets the cone of declination d only if `z cos d = rho sin d` somewhere in those spans,
+//! and only at hour angles within those of its corners as seen along the axis. Lanes widen the cone to a shell between the least and the greatest declination.
 //!
 //! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]).
 

@@ -1,6 +1,6 @@
 //! Which part of an arc each of eight triangles hides from a point, in `f64` and in closed form.
 //!
-//! Theory (DESIGN, section 4): with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle
+//! Theory: with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle
 //! hides where all three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in
 //! closed form; their intersection is what the triangle hides.
 //!
