@@ -5,7 +5,7 @@
 //! evenly from whole pages; engines take turns, run by run, so that whatever else the machine does falls on all alike.
 //! Times are those that threads really ran, where the system tells (Linux), or else wall-clock times.
 //!
-//! Options after `--`: `texels=1000000 runs=64 scene=NAME only=engines|scaling|growth`.
+//! Options after `--`: `texels=1000000 runs=64 scene=NAME only=engines|exact|scaling|growth`.
 
 mod common;
 
@@ -34,6 +34,9 @@ const RUN: usize = 1024;
 fn main() {
     let options = Options::from_arguments();
     let scenes: Vec<Subject> = common::scenes(&SHARED).iter().filter_map(|file| Subject::new(file, &options)).collect();
+    if options.only.as_deref() == Some("exact") {
+        exact_alone(&scenes);
+    }
     if options.wants("engines") {
         engines(&scenes);
     }
@@ -128,6 +131,17 @@ fn engines(scenes: &[Subject]) {
         mean(1),
         least(1)
     );
+}
+
+/// The exact engine by itself: for a profiler.
+fn exact_alone(scenes: &[Subject]) {
+    println!("The exact engine, one thread; a texel:\n| scene | us | nodes | triangles |\n|---|---|---|---|");
+    for Subject { name, scene, geometry, runs } in scenes {
+        let tracer = Tracer::new(scene, geometry);
+        let exact = ExactEngine::new(&tracer, &[summer_day()]);
+        let [Taken { us, nodes, triangles }] = side_by_side([&exact], runs);
+        println!("| {name} | {us:.2} | {nodes:.1} | {triangles:.1} |");
+    }
 }
 
 /// What an engine took for a texel.
