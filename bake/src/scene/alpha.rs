@@ -9,6 +9,9 @@ use glam::{Vec2, Vec3};
 /// Brings a texel index back into `0..size`.
 pub fn wrap_texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     let size = i64::from(size.max(1));
+    if (0..size).contains(&index) {
+        return index as u32;
+    }
     let wrapped = match wrap {
         Wrap::Repeat => index.rem_euclid(size),
         Wrap::Clamp => index.clamp(0, size - 1),

@@ -30,9 +30,9 @@ struct Mask {
     size: [u32; 2],
     wrap: [Wrap; 2],
     alpha: Vec<u8>,
-    /// For each texel of a material without corner alphas, whether it is solid ([`SOLID`]), and how many texels the image
-    /// goes on like that in every direction: texels of a square of twice that and one.
-    reach: Vec<u8>,
+    /// For each texel of a material without corner alphas, the largest square of equal texels that starts at it and lies
+    /// towards each corner of the image: its side in texels, by [`quadrant`], and whether it is solid ([`SOLID`]).
+    squares: Vec<[u8; 4]>,
 }
 
 /// A triangle with holes, for engines that follow the sun across it.
@@ -43,12 +43,18 @@ pub(crate) struct CutView<'a> {
     pub alphas: [f64; 3],
     /// Least alpha that is solid.
     pub cutoff: f64,
-    /// Whether the corners' alphas are the material's own, for which [`Mask::reach`] was made.
+    /// Whether the corners' alphas are the material's own, for which [`Mask::squares`] were made.
     is_plain: bool,
     mask: Option<&'a Mask>,
 }
 
 impl CutView<'_> {
+    /// A triangle without a texture.
+    #[cfg(test)]
+    pub fn of_alphas(alphas: [f64; 3], cutoff: f64) -> Self {
+        Self { texel_uvs: [DVec2::ZERO; 3], alphas, cutoff, is_plain: false, mask: None }
+    }
+
     /// Whether alpha changes from texel to texel.
     pub fn has_texture(&self) -> bool {
         self.mask.is_some()
@@ -66,27 +72,53 @@ impl CutView<'_> {
     /// which it is. Where alpha may pass the cutoff within the texel there is no answer to that.
     #[inline]
     pub fn uniform(&self, texel: [i64; 2]) -> ([[i64; 2]; 2], Option<bool>) {
-        let square = |reach: i64| texel.map(|at| [at - reach, at + 1 + reach]);
-        let Some(mask) = self.mask else { return (square(0), self.verdict(1.0)) };
+        let (sides, verdict) = self.squares(texel);
+        let reach = sides.map(|side| i64::from(side & !SOLID)).into_iter().fold(i64::MAX, i64::min) - 1;
+        (texel.map(|at| [at - reach, at + 1 + reach]), verdict)
+    }
+
+    /// The same for a square that starts at the texel and lies where each coordinate grows, or falls.
+    #[inline]
+    pub fn uniform_ahead(&self, texel: [i64; 2], grows: [bool; 2]) -> ([[i64; 2]; 2], Option<bool>) {
+        let (sides, verdict) = self.squares(texel);
+        let side = i64::from(sides[quadrant(grows)] & !SOLID);
+        let ahead = |k: usize| if grows[k] { [texel[k], texel[k] + side] } else { [texel[k] + 1 - side, texel[k] + 1] };
+        ([ahead(0), ahead(1)], verdict)
+    }
+
+    #[inline]
+    fn squares(&self, texel: [i64; 2]) -> ([u8; 4], Option<bool>) {
+        let Some(mask) = self.mask else { return ([1; 4], self.verdict(1.0)) };
         if !self.is_plain || !mask.is_unturned(texel) {
-            return (square(0), self.verdict(self.alpha_of(texel)));
+            return ([1; 4], self.verdict(self.alpha_of(texel)));
         }
         let x = wrap_texel(texel[0], mask.size[0], mask.wrap[0]);
         let y = wrap_texel(texel[1], mask.size[1], mask.wrap[1]);
-        let reach = mask.reach[y as usize * mask.size[0] as usize + x as usize];
-        (square(i64::from(reach & !SOLID)), Some(reach & SOLID != 0))
+        let sides = mask.squares[y as usize * mask.size[0] as usize + x as usize];
+        (sides, Some(sides[0] & SOLID != 0))
     }
 
     /// Whether all of the triangle is solid, or clear, where the texture's alpha is this.
     fn verdict(&self, alpha: f64) -> Option<bool> {
-        let all = self.alphas.iter().all(|own| own * alpha >= self.cutoff);
-        let none = self.alphas.iter().all(|own| own * alpha < self.cutoff);
-        if all { Some(true) } else { none.then_some(false) }
+        let solid = self.alphas.map(|own| is_solid(own as f32, alpha as f32, self.cutoff as f32));
+        solid.iter().all(|&corner| corner == solid[0]).then_some(solid[0])
     }
 }
 
-/// Bit of [`Mask::reach`] that says that a texel is solid.
+/// Whether alpha reaches the cutoff. In `f32` wherever it is asked, since cutoffs such as 0.2 are alphas in `f32` alone.
+#[inline]
+fn is_solid(own: f32, texel: f32, cutoff: f32) -> bool {
+    own * texel >= cutoff
+}
+
+/// Bit of [`Mask::squares`] that says that a texel is solid.
 const SOLID: u8 = 0x80;
+
+/// Which of four squares lies where coordinates grow or fall.
+#[inline]
+fn quadrant(grows: [bool; 2]) -> usize {
+    usize::from(grows[0]) + 2 * usize::from(grows[1])
+}
 
 impl Cuts {
     const NONE: u32 = u32::MAX;
@@ -108,8 +140,8 @@ impl Cuts {
                     cuts.masks.push(Mask::new(
                         &scene.images[texture.image],
                         texture.wrap,
-                        f64::from(material.base_color.w),
-                        f64::from(cutoff),
+                        material.base_color.w,
+                        cutoff,
                     ));
                     cuts.masks.len() as u32 - 1
                 })
@@ -158,44 +190,59 @@ impl Cuts {
         let texel = triangle
             .mask
             .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
-        blend(triangle.alphas, barycentric) * texel >= triangle.cutoff
+        is_solid(blend(triangle.alphas, barycentric), texel, triangle.cutoff)
     }
 }
 
-/// For each texel, whether it is solid and how far around it nothing changes, within the image: the distance to the nearest
-/// texel that differs, counted along the longer axis, less one. Two sweeps over the image suffice for that distance
-/// (Rosenfeld and Pfaltz, "Sequential operations in digital picture processing", 1966).
-fn reaches(solid: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
-    let differs = |a: usize, b: usize| solid[a] != solid[b];
-    let mut steps: Vec<u8> = (0..solid.len())
-        .map(|i| {
-            let (x, y) = (i % width, i / width);
-            let border = x.min(y).min(width - 1 - x).min(height - 1 - y);
-            border.min(usize::from(!SOLID)) as u8
-        })
-        .collect();
-    let mut relax = |i: usize, dx: isize, dy: isize| {
-        let (x, y) = ((i % width) as isize + dx, (i / width) as isize + dy);
-        if (0..width as isize).contains(&x) && (0..height as isize).contains(&y) {
-            let neighbour = y as usize * width + x as usize;
-            let most = if differs(i, neighbour) { 0 } else { steps[neighbour].saturating_add(1) };
-            steps[i] = steps[i].min(most);
+/// For each texel, whether it is solid, and the sides of the largest squares within the image that start at it, go towards
+/// each of the four corners, and hold nothing that differs. A square is one larger than the least of those that start at its
+/// three neighbours, if they are like it: one sweep over the image for each corner.
+fn squares(solid: &[bool], [width, height]: [usize; 2]) -> Vec<[u8; 4]> {
+    let mut squares: Vec<[u8; 4]> = solid.iter().map(|&solid| [if solid { SOLID } else { 0 }; 4]).collect();
+    for grows in [[false, false], [true, false], [false, true], [true, true]] {
+        let q = quadrant(grows);
+        for row in 0..height {
+            for column in 0..width {
+                // From the corner that the squares go towards.
+                let x = if grows[0] { width - 1 - column } else { column };
+                let y = if grows[1] { height - 1 - row } else { row };
+                let here = y * width + x;
+                let beside = |dx: bool, dy: bool| {
+                    let x = if !dx {
+                        x
+                    } else if grows[0] {
+                        x + 1
+                    } else {
+                        x - 1
+                    };
+                    let y = if !dy {
+                        y
+                    } else if grows[1] {
+                        y + 1
+                    } else {
+                        y - 1
+                    };
+                    let there = y * width + x;
+                    if solid[there] == solid[here] { squares[there][q] & !SOLID } else { 0 }
+                };
+                let is_last = column == 0 || row == 0;
+                let around = || beside(true, false).min(beside(false, true)).min(beside(true, true));
+                let side = if is_last { 1 } else { (around() + 1).min(!SOLID) };
+                squares[here][q] |= side;
+            }
         }
-    };
-    let before = [(-1, 0), (-1, -1), (0, -1), (1, -1)];
-    (0..solid.len()).for_each(|i| before.iter().for_each(|&(dx, dy)| relax(i, dx, dy)));
-    (0..solid.len()).rev().for_each(|i| before.iter().for_each(|&(dx, dy)| relax(i, -dx, -dy)));
-    steps.iter().zip(solid).map(|(&reach, &solid)| if solid { reach | SOLID } else { reach }).collect()
+    }
+    squares
 }
 
 impl Mask {
     /// For a material's factor of alpha and its cutoff.
-    fn new(image: &crate::scene::Image, wrap: [Wrap; 2], factor: f64, cutoff: f64) -> Self {
+    fn new(image: &crate::scene::Image, wrap: [Wrap; 2], factor: f32, cutoff: f32) -> Self {
         let alpha: Vec<u8> = image.rgba.iter().map(|texel| texel[3]).collect();
         let size = [image.width, image.height];
-        let solid: Vec<bool> = alpha.iter().map(|&a| f64::from(a) / 255.0 * factor >= cutoff).collect();
-        let reach = reaches(&solid, size.map(|n| n as usize));
-        Self { size, wrap, alpha, reach }
+        let solid: Vec<bool> = alpha.iter().map(|&a| is_solid(factor, f32::from(a) / 255.0, cutoff)).collect();
+        let squares = squares(&solid, size.map(|n| n as usize));
+        Self { size, wrap, alpha, squares }
     }
 
     /// Whether texels run the same way around a texel as in the image itself, so that squares may be used.
@@ -213,5 +260,51 @@ impl Mask {
     fn alpha_at(&self, uv: Vec2) -> f32 {
         let [x, y] = nearest_texel(uv, self.size, self.wrap);
         f32::from(self.alpha[y as usize * self.size[0] as usize + x as usize]) / 255.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{SceneBuilder, pseudo_random};
+
+    /// Alphas that are just the cutoff are solid, as a ray finds them: 51 / 255 is 0.2 in `f32`, and less in `f64`.
+    #[test]
+    fn an_alpha_at_the_cutoff_is_solid() {
+        for (alpha, cutoff) in [(51, 0.2), (102, 0.4), (153, 0.6), (204, 0.8)] {
+            for (alpha, is_solid) in [(alpha, true), (alpha - 1, false)] {
+                let (builder, image) = SceneBuilder::new().image(1, 1, vec![[0, 0, 0, alpha]]);
+                let mask = Mask::new(&builder.build().images[image], [Wrap::Repeat; 2], 1.0, cutoff);
+                let texel_uvs = [DVec2::ZERO; 3];
+                let cutoff = f64::from(cutoff);
+                let plain = CutView { texel_uvs, alphas: [1.0; 3], cutoff, is_plain: true, mask: Some(&mask) };
+                let by_corners = CutView { is_plain: false, ..plain };
+                assert_eq!(plain.uniform([0, 0]).1, Some(is_solid), "{alpha} of {cutoff}");
+                assert_eq!(by_corners.uniform([0, 0]).1, Some(is_solid), "{alpha} of {cutoff}");
+            }
+        }
+    }
+
+    /// Brute force: grow each square until a texel differs or the image ends.
+    #[test]
+    fn squares_are_the_largest_that_hold_equal_texels() {
+        let (width, height) = (19, 13);
+        let mut state = 3;
+        let solid: Vec<bool> = (0..width * height).map(|_| pseudo_random(&mut state) < 0.9).collect();
+        let found = squares(&solid, [width, height]);
+        for (here, sides) in found.iter().enumerate() {
+            for grows in [[false, false], [true, false], [false, true], [true, true]] {
+                let at = |i: usize, start: usize, grows: bool| if grows { start + i } else { start.wrapping_sub(i) };
+                let is_equal = |&side: &usize| {
+                    (0..side * side).all(|i| {
+                        let (x, y) = (at(i % side, here % width, grows[0]), at(i / side, here / width, grows[1]));
+                        x < width && y < height && solid[y * width + x] == solid[here]
+                    })
+                };
+                let largest = (1..=width).take_while(is_equal).count();
+                assert_eq!(usize::from(sides[quadrant(grows)] & !SOLID), largest, "{here} {grows:?}");
+                assert_eq!(sides[quadrant(grows)] & SOLID != 0, solid[here]);
+            }
+        }
     }
 }
