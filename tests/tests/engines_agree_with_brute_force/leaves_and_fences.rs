@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
 use sunbake::sun::SunArc;
 use sunbake::testing::{SceneBuilder, block, cut, floor};
-use sunbake::visibility::{BisectEngine, Intervals};
+use sunbake::visibility::{BisectEngine, IntervalTable, Intervals, lit_at};
 use sunbake_tests::engines::{ALL, BISECT, Candidate, EXACT, RAYS, SUNS, all_must_agree};
 use sunbake_tests::paths::{Random, day_at, keyed};
 use sunbake_tests::{Oracle, Traced, over_the_top, path_of};
@@ -51,6 +51,24 @@ fn a_leaf_casts_its_cut_out() {
         }
     }
     assert!(edges > 700, "the leaf has hardly any holes: {edges}");
+}
+
+/// What hid the sun from a neighbour is tried first, so that leaves are followed along other stretches than from a point
+/// that is asked alone: the answer is the same, to the last bit.
+#[test]
+fn neighbours_change_no_answer_under_a_leaf() {
+    for (seed, wrap) in [(5, Wrap::Repeat), (6, Wrap::Clamp), (7, Wrap::Mirror)] {
+        let here = under_a_leaf(seed, wrap);
+        let path = day_at(40.0, "2026-03-20");
+        let at = |i: i32| DVec3::new(0.05 * f64::from(i % 30) - 0.7, 0.0, 0.05 * f64::from(i / 30) - 0.7);
+        let points: Vec<_> = (0..900).map(|i| here.point_at(at(i), FLOOR)).collect();
+        let engine = (EXACT.make)(&here.tracer, std::slice::from_ref(&path));
+        let mut together = IntervalTable::default();
+        engine.session().lit(&points, &mut together);
+        let alone: Vec<Intervals> = points.iter().map(|point| lit_at(engine.as_ref(), point).swap_remove(0)).collect();
+        assert!(alone.iter().map(|lit| lit.as_slice().len()).sum::<usize>() > 1500, "the leaf has hardly any holes");
+        assert_eq!(together.iter().collect::<Vec<_>>(), alone);
+    }
 }
 
 /// B14: a fence of 50 pales between the point and the sun.

@@ -126,14 +126,24 @@ pub(super) fn half_space(a: f64, b: f64, c: f64) -> HalfSpace {
         return if c >= 0.0 { HalfSpace::of(&[[-2.0, 2.0]]) } else { HalfSpace::of(&[]) };
     }
     let w = d.sqrt();
-    let start = diamond(w * b - c * a, -(c * b) - w * a);
-    let end = diamond(-(c * a) - w * b, w * a - c * b);
+    let [start, end] = diamonds([w * b - c * a, -(c * b) - w * a], [-(c * a) - w * b, w * a - c * b]);
     if start <= end { HalfSpace::of(&[[start, end]]) } else { HalfSpace::of(&[[-2.0, end], [start, 2.0]]) }
 }
 
 /// Diamond angle of a vector, from -2 to 2.
 pub(super) fn diamond(x: f64, y: f64) -> f64 {
-    let r = y / (x.abs() + y.abs());
+    unfold(x, y, y / (x.abs() + y.abs()))
+}
+
+/// Diamond angles of two vectors, by one division. Neither order nor sign changes how they round.
+fn diamonds([x, y]: [f64; 2], [x1, y1]: [f64; 2]) -> [f64; 2] {
+    let (sum, sum1) = (x.abs() + y.abs(), x1.abs() + y1.abs());
+    let inverse = 1.0 / (sum * sum1);
+    [unfold(x, y, y * (sum1 * inverse)), unfold(x1, y1, y1 * (sum * inverse))]
+}
+
+/// Diamond angle of (x, y) from the ratio of y to their sum.
+fn unfold(x: f64, y: f64, r: f64) -> f64 {
     match (x < 0.0, y < 0.0) {
         (false, _) => r,
         (true, false) => 2.0 - r,

@@ -1,15 +1,23 @@
-//! Eight boxes at once against the suns of an arc. Conservative, in `f32`.
+//! Sixteen boxes, or sixteen triangles, at once against the suns of an arc that are still wanted. Conservative, in `f32`.
 //!
-//! From one point the suns of an arc lie on a cone about the frame's z axis. In the frame, a box spans heights z and
-//! distances rho from the axis; it meets the cone of declination d only if `z cos d = rho sin d` somewhere in those spans,
-//! and only at hour angles within those of its corners as seen along the axis. Lanes widen the cone to a shell between the least and the greatest declination.
+//! From one point the suns of an arc lie on a cone about the frame's z axis, and those of a span of hour angle in a wedge
+//! whose edge is that axis. What is asked of a box, and of a triangle's corners, is whether it lies
 //!
-//! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]).
+//! * beyond a side of every wanted wedge: a product with a plane's normal tells, and no angle is needed. A wedge of more than half a
+//!   turn is missed by what lies beyond both of its sides;
+//! * above or below the cone (with several lanes, the shell between two): the space inside a cone is convex, so that a
+//!   triangle whose corners lie inside does not reach it. From outside, a plane through the apex that keeps the cone on its
+//!   other side tells: the one on the triangle's side, `z cos d < sin d (u . p)` for a unit vector u across the axis, since
+//!   `u . p` is at most p's distance from it;
+//! * behind the surface.
+//!
+//! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]), and corners are given as much (against the
+//! cone twice as much).
 
-use super::arc::{ArcFrame, Declination};
+use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use super::wide::{Node, WIDTH};
-use fearless_simd::{f32x8, mask32x8, prelude::*};
+use super::wide::{Leaf, Node, Points};
+use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;
 
@@ -19,10 +27,11 @@ const MOST_SPANS: usize = 8;
 const LEAST_SLIT: f32 = 0.02;
 /// Growth of spans of diamond angle: a few steps of an `f32` near 2.
 const ANGLE_PADDING: f32 = 2e-6;
-/// What the cone's condition is relaxed by, as a share of distance.
-const CONE_SLACK: f32 = 1e-6;
+/// What squared distances from the axis are relaxed by, as a share.
+const CONE_SLACK: f32 = 4e-6;
 
 /// What a walk looks for.
+#[derive(Default)]
 pub(super) struct Wanted {
     /// The point, axes of the boxes.
     centre: [f32; 3],
@@ -34,19 +43,18 @@ pub(super) struct Wanted {
     padding: f32,
     /// Cosine and sine of the least declination and of the greatest.
     shell: [[f32; 2]; 2],
-    /// Spans of diamond angle that are still lit in some lane, grown.
-    spans: SmallVec<[[f32; 2]; MOST_SPANS]>,
+    wedges: SmallVec<[Wedge; MOST_SPANS]>,
+    /// Spans of diamond angle that are still lit in some lane, grown; and room to sort them.
+    spans: Vec<[f32; 2]>,
 }
 
-/// What eight boxes came to.
+/// The hour angles from one direction across the axis, counter-clockwise, to another.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Seen {
-    /// Bit set of the boxes that are met.
-    pub mask: u32,
-    /// Their spans of diamond angle; first above second where the span crosses the cut at 2.
-    pub span: [[f32; WIDTH]; 2],
-    /// Least distance from the axis.
-    pub near: [f32; WIDTH],
+struct Wedge {
+    start: [f32; 2],
+    end: [f32; 2],
+    /// Whether it is more than half a turn.
+    is_wide: bool,
 }
 
 /// Frames that a walk is about: where the boxes' axes and the arc's lie.
@@ -77,132 +85,217 @@ impl Frames {
 
 impl Wanted {
     /// Looks from a query's point for what hides any of its gaps.
-    pub fn new(frames: &Frames, query: &Query) -> Self {
-        let in_box = frames.box_from_arc * query.origin;
-        let mut wanted = Self {
-            centre: in_box.as_vec3().to_array(),
-            arc_from_box: frames.arc_from_box,
-            is_aligned: frames.is_aligned,
-            side: query.side.as_vec3().to_array(),
-            padding: frames.padding,
-            shell: frames.shell,
-            spans: SmallVec::new(),
-        };
-        wanted.want(query);
-        wanted
+    pub fn look_from(&mut self, frames: &Frames, query: &Query) {
+        self.centre = (frames.box_from_arc * query.origin).as_vec3().to_array();
+        self.arc_from_box = frames.arc_from_box;
+        self.is_aligned = frames.is_aligned;
+        self.side = query.side.as_vec3().to_array();
+        self.padding = frames.padding;
+        self.shell = frames.shell;
+        self.want(query);
     }
 
     /// Looks for what is open now.
     pub fn want(&mut self, query: &Query) {
-        self.spans.clear();
+        let Self { spans, wedges, .. } = self;
+        spans.clear();
         for gaps in &query.gaps {
-            for &[start, end] in gaps.as_slice() {
-                let span = [start as f32 - ANGLE_PADDING, end as f32 + ANGLE_PADDING];
-                let is_full = self.spans.len() == MOST_SPANS;
-                match self.spans.last_mut() {
-                    Some(last) if is_full || (last[0] <= span[0] && span[0] - last[1] < LEAST_SLIT) => {
-                        *last = [last[0].min(span[0]), last[1].max(span[1])];
-                    }
-                    _ => self.spans.push(span),
+            let grown = |&[start, end]: &[f64; 2]| [start as f32 - ANGLE_PADDING, end as f32 + ANGLE_PADDING];
+            spans.extend(gaps.as_slice().iter().map(grown));
+        }
+        if query.gaps.len() > 1 {
+            spans.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        }
+        wedges.clear();
+        let mut last: Option<[f32; 2]> = None;
+        for &span in spans.iter() {
+            match &mut last {
+                Some(last) if wedges.len() + 1 == MOST_SPANS || span[0] - last[1] < LEAST_SLIT => {
+                    last[1] = last[1].max(span[1]);
                 }
+                _ => wedges.extend(last.replace(span).map(Wedge::new)),
             }
         }
-    }
-
-    /// Whether a span (first above second where it crosses the cut) has a part among those wanted.
-    #[inline(always)]
-    pub fn wants(&self, [low, high]: [f32; 2]) -> bool {
-        self.spans.iter().any(|&[start, end]| {
-            let (from_start, to_end) = (high >= start, low <= end);
-            if low <= high { from_start && to_end } else { from_start || to_end }
-        })
+        wedges.extend(last.map(Wedge::new));
     }
 }
 
-/// Which of a node's boxes are met.
-pub(super) fn node_seen<S: Simd>(simd: S, node: &Node, wanted: &Wanted, out: &mut Seen) {
+impl Wedge {
+    fn new([start, end]: [f32; 2]) -> Self {
+        let direction = |u: f32| of_diamond(f64::from(u.clamp(-2.0, 2.0))).map(|v| v as f32);
+        Self { start: direction(start), end: direction(end), is_wide: end - start > 2.0 }
+    }
+}
+
+/// Which of a node's boxes are met: a bit set. `near2` gets their least squared distance from the axis.
+pub(super) fn node_met<S: Simd>(simd: S, node: &Node, wanted: &Wanted, near2: &mut [f32; 16]) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
-            let x = f32x8::from_slice(simd, &node.centre[0]) - wanted.centre[0];
-            let y = f32x8::from_slice(simd, &node.centre[1]) - wanted.centre[1];
-            let z = f32x8::from_slice(simd, &node.centre[2]) - wanted.centre[2];
-            let half_x = f32x8::from_slice(simd, &node.half[0]);
-            let half_y = f32x8::from_slice(simd, &node.half[1]);
-            let half_z = f32x8::from_slice(simd, &node.half[2]);
-            let mut sides = [
-                [x - half_x - wanted.padding, x + half_x + wanted.padding],
-                [y - half_y - wanted.padding, y + half_y + wanted.padding],
-                [z - half_z - wanted.padding, z + half_z + wanted.padding],
-            ];
-            if !wanted.is_aligned {
-                for (side, row) in sides.iter_mut().zip(&wanted.arc_from_box) {
-                    let middle = x * row[0] + y * row[1] + z * row[2];
-                    let reach = half_x * row[0].abs() + half_y * row[1].abs() + half_z * row[2].abs() + wanted.padding;
-                    *side = [middle - reach, middle + reach];
-                }
-            }
-            seen(simd, sides, wanted, node.count, out);
+            let boxes = turned(simd, node, wanted);
+            let (met, near) = met(simd, &boxes, wanted);
+            near.store_slice(near2);
+            met.to_bitmask() as u32 & real(node.count)
         },
-    );
+    )
 }
 
-/// Which boxes, given by their low and high side along each axis of the arc's frame, are met.
+/// Which triangles of a leaf may hide something wanted: a bit set.
+pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, wanted: &Wanted) -> u32 {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            let a = corner(simd, &leaf.corners[0], wanted);
+            let b = corner(simd, &leaf.corners[1], wanted);
+            let c = corner(simd, &leaf.corners[2], wanted);
+            triangles_met(simd, [a, b, c], wanted).to_bitmask() as u32 & real(leaf.count)
+        },
+    )
+}
+
+/// The lanes in use.
 #[inline(always)]
-fn seen<S: Simd>(simd: S, sides: [[f32x8<S>; 2]; 3], wanted: &Wanted, count: usize, out: &mut Seen) {
-    let [[x0, x1], [y0, y1], [z0, z1]] = sides;
-    let zero = f32x8::splat(simd, 0.0);
-    let (left, right) = (x1.simd_lt(zero), x0.simd_gt(zero));
-    let (below, above) = (y1.simd_lt(zero), y0.simd_gt(zero));
+fn real(count: usize) -> u32 {
+    (1 << count) - 1
+}
 
-    let near_x = x0.max(zero - x1).max(zero);
-    let near_y = y0.max(zero - y1).max(zero);
-    let far_x = x1.max(zero - x0);
-    let far_y = y1.max(zero - y0);
-    let near = (near_x * near_x + near_y * near_y).sqrt();
-    let far = (far_x * far_x + far_y * far_y).sqrt();
-    let [[low_cos, low_sin], [high_cos, high_sin]] = wanted.shell;
-    let least = if low_sin < 0.0 { far } else { near };
-    let greatest = if high_sin < 0.0 { near } else { far };
-    let slack = (far + z1.abs().max(z0.abs())) * CONE_SLACK;
-    let over_low = (z1 * low_cos + slack).simd_ge(least * low_sin);
-    let under_high = (z0 * high_cos - slack).simd_le(greatest * high_sin);
+/// Sixteen boxes relative to where the walk looks from, by axis.
+struct Boxes<S: Simd> {
+    centre: [f32x16<S>; 3],
+    half: [f32x16<S>; 3],
+}
 
-    let not_below_left = !below & left;
-    let not_above_left = !above & left;
-    let first = [(above | not_below_left).select(x1, x0), above.select(left.select(y1, y0), right.select(y0, y1))];
-    let last = [(below | not_above_left).select(x1, x0), below.select(left.select(y0, y1), right.select(y1, y0))];
-    let around = !(left | right | below | above);
-    let low = around.select(f32x8::splat(simd, -3.0), diamond(simd, first));
-    let high = around.select(f32x8::splat(simd, 3.0), diamond(simd, last));
-    let [x, y, z] = wanted.side;
-    let highest =
-        if x > 0.0 { x1 } else { x0 } * x + if y > 0.0 { y1 } else { y0 } * y + if z > 0.0 { z1 } else { z0 } * z;
-    let hit = over_low & under_high & highest.simd_gt(zero) & overlap(simd, low, high, wanted);
-    out.mask = hit.to_bitmask() as u32 & ((1 << count) - 1);
-    if out.mask != 0 {
-        low.store_slice(&mut out.span[0]);
-        high.store_slice(&mut out.span[1]);
-        near.store_slice(&mut out.near);
+/// A node's boxes in the arc's frame.
+#[inline(always)]
+fn turned<S: Simd>(simd: S, node: &Node, wanted: &Wanted) -> Boxes<S> {
+    let x = f32x16::from_slice(simd, &node.centre[0]) - wanted.centre[0];
+    let y = f32x16::from_slice(simd, &node.centre[1]) - wanted.centre[1];
+    let z = f32x16::from_slice(simd, &node.centre[2]) - wanted.centre[2];
+    let half_x = f32x16::from_slice(simd, &node.half[0]);
+    let half_y = f32x16::from_slice(simd, &node.half[1]);
+    let half_z = f32x16::from_slice(simd, &node.half[2]);
+    let padding = wanted.padding;
+    if wanted.is_aligned {
+        return Boxes { centre: [x, y, z], half: [half_x + padding, half_y + padding, half_z + padding] };
+    }
+    let [r0, r1, r2] = wanted.arc_from_box;
+    Boxes {
+        centre: [row(r0, [x, y, z]), row(r1, [x, y, z]), row(r2, [x, y, z])],
+        half: [
+            row(abs(r0), [half_x, half_y, half_z]) + padding,
+            row(abs(r1), [half_x, half_y, half_z]) + padding,
+            row(abs(r2), [half_x, half_y, half_z]) + padding,
+        ],
     }
 }
 
-/// Whether spans have a part among those wanted; a span whose end is below its start crosses the cut.
+/// Corners in the arc's frame, relative to the walk's point.
 #[inline(always)]
-fn overlap<S: Simd>(simd: S, low: f32x8<S>, high: f32x8<S>, wanted: &Wanted) -> mask32x8<S> {
-    let crosses = low.simd_gt(high);
-    let mut any = mask32x8::splat(simd, false);
-    for &[start, end] in &wanted.spans {
-        let (from_start, to_end) = (high.simd_ge(start), low.simd_le(end));
-        any |= (from_start & to_end) | (crosses & (from_start | to_end));
+fn corner<S: Simd>(simd: S, points: &Points, wanted: &Wanted) -> [f32x16<S>; 3] {
+    let x = f32x16::from_slice(simd, &points[0]) - wanted.centre[0];
+    let y = f32x16::from_slice(simd, &points[1]) - wanted.centre[1];
+    let z = f32x16::from_slice(simd, &points[2]) - wanted.centre[2];
+    if wanted.is_aligned {
+        return [x, y, z];
     }
-    any
+    let [r0, r1, r2] = wanted.arc_from_box;
+    [row(r0, [x, y, z]), row(r1, [x, y, z]), row(r2, [x, y, z])]
 }
 
 #[inline(always)]
-fn diamond<S: Simd>(simd: S, [x, y]: [f32x8<S>; 2]) -> f32x8<S> {
-    let zero = f32x8::splat(simd, 0.0);
-    let r = y / (x.abs() + y.abs());
-    let side = y.simd_lt(zero).select(f32x8::splat(simd, -2.0), f32x8::splat(simd, 2.0));
-    x.simd_lt(zero).select(side - r, r)
+fn abs([a, b, c]: [f32; 3]) -> [f32; 3] {
+    [a.abs(), b.abs(), c.abs()]
+}
+
+#[inline(always)]
+fn row<S: Simd>([a, b, c]: [f32; 3], [x, y, z]: [f32x16<S>; 3]) -> f32x16<S> {
+    x * a + y * b + z * c
+}
+
+/// Which boxes are met, and their least squared distance from the axis.
+#[inline(always)]
+fn met<S: Simd>(simd: S, boxes: &Boxes<S>, wanted: &Wanted) -> (mask32x16<S>, f32x16<S>) {
+    let zero = f32x16::splat(simd, 0.0);
+    let Boxes { centre: [x, y, z], half: [half_x, half_y, half_z] } = *boxes;
+    let (near_x, near_y) = ((x.abs() - half_x).max(zero), (y.abs() - half_y).max(zero));
+    let (far_x, far_y) = (x.abs() + half_x, y.abs() + half_y);
+    let near2 = near_x * near_x + near_y * near_y;
+    let far2 = far_x * far_x + far_y * far_y;
+    let [low, [high_cos, high_sin]] = wanted.shell;
+    let over_low = reaches_over(simd, z + half_z, [near2, far2], low);
+    let under_high = reaches_over(simd, half_z - z, [near2, far2], [high_cos, -high_sin]);
+
+    let mut in_wedge = mask32x16::splat(simd, false);
+    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &wanted.wedges {
+        let past_start = (y * sx - x * sy + half_y * sx.abs() + half_x * sy.abs()).simd_ge(zero);
+        let before_end = (x * ey - y * ex + half_x * ey.abs() + half_y * ex.abs()).simd_ge(zero);
+        in_wedge |= if is_wide { past_start | before_end } else { past_start & before_end };
+    }
+    let highest = row(wanted.side, [x, y, z]) + row(abs(wanted.side), [half_x, half_y, half_z]);
+    (over_low & under_high & in_wedge & highest.simd_ge(zero), near2)
+}
+
+/// Whether `z cos d >= rho sin d` for the given z and some distance from the axis between two, given squared.
+#[inline(always)]
+fn reaches_over<S: Simd>(simd: S, z: f32x16<S>, [near2, far2]: [f32x16<S>; 2], [cos, sin]: [f32; 2]) -> mask32x16<S> {
+    let above = z.simd_ge(f32x16::splat(simd, 0.0));
+    let height2 = z * z * (cos * cos);
+    match sin >= 0.0 {
+        true => above & height2.simd_ge(near2 * (sin * sin * (1.0 - CONE_SLACK))),
+        false => above | height2.simd_le(far2 * (sin * sin * (1.0 + CONE_SLACK))),
+    }
+}
+
+/// Which triangles may be met.
+#[inline(always)]
+fn triangles_met<S: Simd>(simd: S, [a, b, c]: [[f32x16<S>; 3]; 3], wanted: &Wanted) -> mask32x16<S> {
+    let tiny = f32x16::splat(simd, -wanted.padding);
+    let mut in_wedge = mask32x16::splat(simd, false);
+    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &wanted.wedges {
+        let from_start = (a[1] * sx - a[0] * sy).max(b[1] * sx - b[0] * sy).max(c[1] * sx - c[0] * sy);
+        let to_end = (a[0] * ey - a[1] * ex).max(b[0] * ey - b[1] * ex).max(c[0] * ey - c[1] * ex);
+        let (past_start, before_end) = (from_start.simd_ge(tiny), to_end.simd_ge(tiny));
+        in_wedge |= if is_wide { past_start | before_end } else { past_start & before_end };
+    }
+    let highest = row(wanted.side, a).max(row(wanted.side, b)).max(row(wanted.side, c));
+
+    let ahead = in_wedge & highest.simd_ge(tiny);
+    if ahead.to_bitmask() == 0 {
+        return ahead;
+    }
+
+    // Towards the triangle's middle across the axis, and how long that is.
+    let (x, y) = (a[0] + b[0] + c[0], a[1] + b[1] + c[1]);
+    let middle = [x, y, (x * x + y * y).sqrt()];
+    let [[low_cos, low_sin], high] = wanted.shell;
+    let is_above = lies_above(simd, [a, b, c], middle, high, wanted.padding);
+    let upside_down = [[a[0], a[1], -a[2]], [b[0], b[1], -b[2]], [c[0], c[1], -c[2]]];
+    let is_below = lies_above(simd, upside_down, middle, [low_cos, -low_sin], wanted.padding);
+    ahead & !(is_above | is_below)
+}
+
+/// Whether all of a triangle is sure to have `z cos d > rho sin d`.
+#[inline(always)]
+fn lies_above<S: Simd>(
+    simd: S,
+    [a, b, c]: [[f32x16<S>; 3]; 3],
+    [x, y, length]: [f32x16<S>; 3],
+    [cos, sin]: [f32; 2],
+    padding: f32,
+) -> mask32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let spare = 2.0 * padding;
+    let height = [a[2] * cos - spare, b[2] * cos - spare, c[2] * cos - spare];
+    if sin < 0.0 {
+        let (x, y) = (x * sin, y * sin);
+        let a = height[0] * length - (x * a[0] + y * a[1]);
+        let b = height[1] * length - (x * b[0] + y * b[1]);
+        let c = height[2] * length - (x * c[0] + y * c[1]);
+        return a.min(b).min(c).simd_gt(zero);
+    }
+    let sin2 = sin * sin * (1.0 + CONE_SLACK);
+    let a = (height[0] * height[0]).simd_gt((a[0] * a[0] + a[1] * a[1]) * sin2);
+    let b = (height[1] * height[1]).simd_gt((b[0] * b[0] + b[1] * b[1]) * sin2);
+    let c = (height[2] * height[2]).simd_gt((c[0] * c[0] + c[1] * c[1]) * sin2);
+    a & b & c & height[0].min(height[1]).min(height[2]).simd_gt(zero)
 }

@@ -1,26 +1,29 @@
 //! Closing a query's gaps with triangles, eight at a time.
 
 use super::arc::ArcFrame;
+use super::follow::{Follower, Solid};
 use super::gaps::Gaps;
-use super::holes::{Parts, Pierced};
-use super::near::{hidden_near, meet};
+use super::holes::Pierced;
+use super::near::hidden_near;
 use super::seeds::Seeds;
-use super::solve::{Hidden, Packet, hide, turned};
+use super::solve::{Hidden, Packet, hide};
 use super::walk::bits;
 use crate::trace::Tracer;
 use fearless_simd::Simd;
 use glam::DVec3;
-use smallvec::SmallVec;
+
+/// What is solid of a mask for a shorter time than this, in diamond angle, is rounding's: a corner that is just touched.
+const LEAST_SOLID: f64 = 1e-10;
 
 /// A point, one of its sides, and what of the arc is still lit there.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Query {
     /// Where its rays start, arc frame.
     pub origin: DVec3,
     /// Unit vector that the side faces, arc frame.
     pub side: DVec3,
     /// One for each lane.
-    pub gaps: SmallVec<[Gaps; 3]>,
+    pub gaps: Vec<Gaps>,
 }
 
 impl Query {
@@ -37,8 +40,9 @@ pub(super) struct Coverer<'a> {
     seeds: [Seeds; 2],
     /// What is of use at this point.
     next_seeds: [Seeds; 2],
-    /// Room for one answer a lane.
+    /// Room for one answer a lane, and for what has holes.
     hidden: Vec<Hidden>,
+    follower: Follower<'a>,
 }
 
 impl<'a> Coverer<'a> {
@@ -49,13 +53,14 @@ impl<'a> Coverer<'a> {
             seeds: Default::default(),
             next_seeds: Default::default(),
             hidden: vec![Hidden::default(); frame.lanes.len()],
+            follower: Follower::default(),
         }
     }
 
-    /// Adds a triangle to a packet.
-    #[inline]
-    pub fn add_to(&self, packet: &mut Packet, id: u32) {
-        packet.push(id, self.tracer.corners()[id as usize].map(|corner| turned(corner, &self.frame.arc_from_bake)));
+    /// Turns the triangles of a packet into the arc's frame and closes what they hide; whether they do.
+    pub fn turn_and_close<S: Simd>(&mut self, simd: S, packet: &mut Packet, query: &mut Query) -> bool {
+        packet.turn(simd, &self.frame.arc_from_bake);
+        self.close(simd, packet, query)
     }
 
     /// Closes what was of use at the point before: solid triangles, then those with holes, which cost more. Returns how many
@@ -78,26 +83,32 @@ impl<'a> Coverer<'a> {
     /// Closes what some triangles hide, and notes which did; whether any.
     pub fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) -> bool {
         let Packet { corners, ids, count } = packet;
-        let lanes = self.frame.lanes.len();
         let run_up = self.tracer.run_up();
         let near = hide(simd, corners, query.origin, run_up * run_up, &self.frame.lanes, &query.gaps, &mut self.hidden);
         let real = (1u32 << *count) - 1;
         let mut useful = 0;
-        for lane in 0..lanes {
+        for lane in 0..self.frame.lanes.len() {
             for slot in bits(self.hidden[lane].mask & real & !near) {
                 let hidden = &self.hidden[lane];
-                let closed = if hidden.split & (1 << slot) == 0 && !self.tracer.has_holes(ids[slot]) {
-                    query.gaps[lane].close([hidden.low[slot], hidden.high[slot]])
-                } else {
-                    self.close_pieces(simd, ids[slot], &pieces(hidden, slot), lane, query)
+                let closes = match hidden.whole(slot) {
+                    Some([start, end]) if start >= end => false,
+                    Some(span) if !self.tracer.has_holes(ids[slot]) => query.gaps[lane].close(span),
+                    _ => self.close_pieces(packet, [slot, lane], &self.hidden[lane].pieces(slot), query),
                 };
-                useful |= u32::from(closed > 0.0) << slot;
+                useful |= u32::from(closes) << slot;
             }
             for slot in bits(near & real) {
-                let corners = self.relative(ids[slot], query.origin);
+                let corners = packet.corners_of(slot).map(|corner| corner - query.origin);
                 let spans = hidden_near(self.frame, lane, corners, run_up);
-                useful |= u32::from(self.close_pieces(simd, ids[slot], &spans, lane, query) > 0.0) << slot;
+                useful |= u32::from(self.close_pieces(packet, [slot, lane], &spans, query)) << slot;
             }
+        }
+        if !self.follower.is_empty() {
+            self.follower.follow();
+            for &Solid { slot, lane, span } in &self.follower.found {
+                useful |= u32::from(span[1] - span[0] > LEAST_SOLID && query.gaps[lane].close(span)) << slot;
+            }
+            self.follower.clear();
         }
         for slot in bits(useful) {
             let kind = usize::from(self.tracer.has_holes(ids[slot]));
@@ -106,35 +117,20 @@ impl<'a> Coverer<'a> {
         useful != 0
     }
 
-    /// Corners of a triangle relative to a point, arc frame.
-    fn relative(&self, id: u32, origin: DVec3) -> [DVec3; 3] {
-        self.tracer.corners()[id as usize].map(|corner| turned(corner, &self.frame.arc_from_bake) - origin)
-    }
-
-    /// Closes what a triangle hides in several spans, or with holes.
-    fn close_pieces<S: Simd>(&self, simd: S, id: u32, spans: &[[f64; 2]], lane: usize, query: &mut Query) -> f64 {
-        let open = meet(spans, query.gaps[lane].as_slice());
-        if open.is_empty() || !self.tracer.has_holes(id) {
-            return open.iter().map(|&span| query.gaps[lane].close(span)).sum();
+    /// Closes what a triangle hides in several spans; one with holes is put down to be followed.
+    fn close_pieces(&mut self, packet: &Packet, at: [usize; 2], spans: &[[f64; 2]], query: &mut Query) -> bool {
+        let [slot, lane] = at;
+        let gaps = &mut query.gaps[lane];
+        let Some(cut) = self.tracer.cut(packet.ids[slot]) else {
+            return spans.iter().fold(false, |closes, &span| gaps.close(span) | closes);
+        };
+        let both = |span: &[f64; 2], gap: &[f64; 2]| [span[0].max(gap[0]), span[1].min(gap[1])];
+        let open = spans.iter().flat_map(|span| gaps.as_slice().iter().map(move |gap| both(span, gap)));
+        let mut open = open.filter(|span| span[0] < span[1]).peekable();
+        if open.peek().is_some() {
+            let corners = packet.corners_of(slot).map(|corner| corner - query.origin);
+            self.follower.add(Pierced::new(cut, at, corners, self.frame.lanes[lane]), open);
         }
-        let Some(cut) = self.tracer.cut(id) else { return 0.0 };
-        let pierced = Pierced::new(cut, self.relative(id, query.origin), self.frame.lanes[lane]);
-        let mut solid = Parts::new();
-        open.iter().for_each(|&span| pierced.solid_parts(simd, span, &mut solid));
-        solid.iter().map(|&span| query.gaps[lane].close(span)).sum()
+        false
     }
-}
-
-/// The hidden span of a triangle less its cuts.
-fn pieces(hidden: &Hidden, slot: usize) -> Vec<[f64; 2]> {
-    let mut left = Gaps::from_unsorted(&mut [[hidden.low[slot], hidden.high[slot]]]);
-    if hidden.split & (1 << slot) != 0 {
-        for cut in &hidden.cuts {
-            let [start, end] = [cut[0][slot], cut[1][slot]];
-            if start < end {
-                left.close([start, end]);
-            }
-        }
-    }
-    left.as_slice().to_vec()
 }

@@ -7,40 +7,59 @@
 //! union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
 //!
 //! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
-//! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then an
-//! eight-wide hierarchy with a box for every triangle (`wide.rs`) is walked, near things first (`walk.rs`), past boxes that
-//! no sun still lit can meet (`boxes.rs`, `f32`, padded); triangles that pass are collected and solved eight at a time in
-//! `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones for its cone. Triangles
-//! with holes are followed from texel to texel (`holes.rs`), triangles within the run-up of shadow rays have a case of
-//! their own (`near.rs`). SIMD is chosen at run time and changes no bit: nothing is fused, every operation rounds alike.
+//! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then a
+//! sixteen-wide hierarchy (`wide.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that no sun still lit
+//! can meet: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`). Triangles that pass are collected and
+//! solved eight at a time in `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones
+//! for its cone. Across triangles with holes the sun is followed from texel to texel (`holes.rs`, `follow.rs`), triangles
+//! within the run-up of shadow rays have a case of their own (`near.rs`). SIMD is chosen at run time and changes no bit:
+//! nothing is fused, every operation rounds alike.
 //!
-//! **What was tried.** Ratios are from scenes of 36,000 to 600,000 triangles, before and after, on shared cores.
+//! **What was tried.** Ratios are of time, from scenes of 36,000 to 600,000 triangles, before and after, on shared cores.
 //!
-//! * Eight triangles at a time in `f64`: 70 ns for eight where the scalar prototype took 120 to 150 ns for one.
-//! * A box for every triangle instead of leaves of eight: a third fewer triangles solved and twice as many nodes; 0.7 of the
-//!   time on an open city, no change on dense scenes.
+//! What helped:
+//!
+//! * Eight triangles at a time in `f64`: 110 ns for eight where the scalar prototype took 120 to 150 ns for one. Roots and
+//!   quotients are more than half of that; taking the two ends of a span by one division: 0.95.
 //! * The last point's occluders first, copied as they are found: a third fewer triangles than a list that ages.
-//! * Squares of equal texels around holes (a distance map of the mask): 0.6 of the time where there is foliage.
-//! * Leaving off the turn into the arc's frame where boxes already lie along it: 0.95.
-//! * One list of candidates for a block of 16 or 64 texels, gathered where a few scouts saw light, the rest presumed dark and
-//!   checked: **lost**, 1 to 1.5 times the time. Near surfaces are seen from a block under all angles at once, so lists hold
-//!   hundreds of triangles just where scenes are dense. Bounding each candidate's span over the block (edge functions are
-//!   linear in the point) took only a tenth off the lists.
-//! * Testing the boxes of a leaf's triangles before solving the leaf as a whole: **lost**, some box is nearly always met.
-//! * Working on gaps kept on the heap: half of all time went to allocation; they are held in place.
+//! * Squares of equal texels crossed in one step: 0.6 where there is foliage.
+//! * Corners of leaves instead of a box for each triangle: a third fewer triangles solved, 0.9.
+//! * Wedges and cone by products with planes, without angles, roots or quotients; sixteen boxes a node instead of eight: 0.8.
+//! * Triangles turned into the arc's frame eight at a time, not as each is met: 0.9.
+//! * Lists of gaps kept from point to point, and most spans in one piece: 0.8.
+//! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is foliage;
+//!   four curves that take turns instead of one after the other, 0.85 more.
+//! * The largest square of equal texels that lies ahead, not around: 0.9 where there is foliage.
+//! * Triangles with holes solved after solid ones, and packets not copied: 0.9 in shade.
 //!
-//! * Boxes in 8 bits, two cache lines a node instead of four: no change, so left out.
-//! * Triangles with holes solved after solid ones, and packets not copied: 0.9 of the time in shade.
+//! What did not:
 //!
-//! **What is left.** Where there is foliage a third of the time goes to following holes, once a lane; a sixth to solving, a
-//! sixth to a third to boxes, an eighth to lists of gaps. Against rays the gain is least in shade, since a ray that knows
-//! its occluder costs 30 ns, and greatest in the open. Not tried: the triangles across the edges of those that bound a gap
-//! before the hierarchy is asked (most walks in shade close a slit that has opened between two points); what a large occluder
-//! hides from a whole tile; sixteen boxes at a time; leaf cards cut to their outlines when they are loaded.
+//! * One list of candidates for a block of 16 or 64 points. With triangles on it, gathered where a few scouts saw light and
+//!   the rest presumed dark and checked: **lost**, 1 to 1.5. Near surfaces are seen from a block under all angles at once, so
+//!   lists hold hundreds of triangles just where scenes are dense. With nodes and leaves on it, of what any point of the block
+//!   has left after its seeds, opened down to the size of the block: **nothing**, 0.98 to 1.1, since sixteen boxes take 25 ns
+//!   and what they save is spent on gathering, and seeds that stay the same for a block close less.
+//! * Triangles with holes followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another, so each
+//!   that is followed spares others.
+//! * Eight curves by SIMD: nothing over four in turns. Three of eight lanes were busy on average, and the look-up between
+//!   two steps is scalar.
+//! * Leaves of eight triangles instead of sixteen, and testing the boxes of a leaf's triangles before all are solved: nothing.
+//! * Corners in the tracer's axes, turned as they are tested, to spare a second copy: **lost**, 1.05.
+//! * Boxes in 8 bits, two cache lines a node instead of four: nothing.
+//! * All of a point's work as one function compiled for the widest SIMD: nothing.
+//! * Gaps on the heap, made anew for each point: half of all time went to allocation.
+//!
+//! **What is left**, on our own scene: a quarter follows holes (texel by square, each with a branch that nothing
+//! predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a tenth collects triangles. Two thirds of
+//! the triangles solved in a walk cross the cone but hide nothing that is still lit: a test of the edges in `f32` would tell.
+//! Not tried: the triangles across the edges of those that bound a gap before the hierarchy is asked (most walks in shade
+//! close a slit that has opened between two points); what a large occluder hides from a whole block; leaf cards cut to their
+//! outlines when they are loaded.
 
 mod arc;
 mod boxes;
 mod cover;
+mod follow;
 mod gaps;
 mod holes;
 mod near;
@@ -54,13 +73,11 @@ use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
 use arc::ArcFrame;
-use boxes::{Frames, Wanted};
+use boxes::Frames;
 use cover::{Coverer, Query};
 use fearless_simd::{Level, Simd, dispatch};
-use gaps::Gaps;
 use glam::{DMat3, DVec3};
-use smallvec::SmallVec;
-use walk::{Room, close_by_walk};
+use walk::Walk;
 use wide::Wide;
 
 /// Growth of every box, tracer space (whose half size is 512 to 1024): four times the steps of an `f32` that turning a
@@ -107,7 +124,7 @@ impl Engine for ExactEngine<'_> {
     fn session(&self) -> Box<dyn Session + '_> {
         let coverer = |arc| Coverer::new(self.tracer, arc);
         let coverers = self.arcs.iter().map(|arc| [coverer(&arc.frame), coverer(&arc.frame)]).collect();
-        Box::new(ExactSession { engine: self, coverers, work: Work::default(), room: Room::default() })
+        Box::new(ExactSession { engine: self, coverers, room: Room::default() })
     }
 }
 
@@ -115,8 +132,16 @@ struct ExactSession<'a> {
     engine: &'a ExactEngine<'a>,
     /// For each arc, one for each side of a surface: seeds of the front are not those of the back.
     coverers: Vec<[Coverer<'a>; 2]>,
-    work: Work,
     room: Room,
+}
+
+/// What is used anew by every point.
+#[derive(Default)]
+struct Room {
+    walk: Walk,
+    query: Query,
+    /// For each lane, when the point sees the sun.
+    lit: Vec<Vec<[f64; 2]>>,
 }
 
 impl Session for ExactSession<'_> {
@@ -126,61 +151,57 @@ impl Session for ExactSession<'_> {
     }
 
     fn work(&self) -> Work {
-        self.work
+        self.room.walk.work
     }
 }
 
 impl ExactSession<'_> {
     fn lit_with<S: Simd>(&mut self, simd: S, points: &[SurfacePoint], answers: &mut IntervalTable) {
-        let mut lit: SmallVec<[Vec<[f64; 2]>; 3]> = (0..self.engine.lane_count).map(|_| Vec::new()).collect();
+        self.room.lit.resize_with(self.engine.lane_count, Vec::new);
         for point in points {
-            for index in 0..self.engine.arcs.len() {
-                for side in 0..=usize::from(point.is_double_sided) {
-                    let Some(mut query) = self.query(index, point, side) else { continue };
-                    self.answer(simd, index, side, &mut query);
-                    let frame = &self.engine.arcs[index].frame;
-                    for (gaps, times) in query.gaps.iter().zip(&mut lit) {
-                        times.extend(gaps.as_slice().iter().map(|span| span.map(|u| frame.t_of(u))));
-                    }
-                }
+            for arc in 0..self.engine.arcs.len() {
+                (0..=usize::from(point.is_double_sided)).for_each(|side| self.light(simd, arc, side, point));
             }
-            for times in &mut lit {
+            for times in &mut self.room.lit {
                 answers.push(&Intervals::from_unsorted(std::mem::take(times)));
             }
         }
     }
 
-    /// What is asked of an arc at one side of a point; nothing if its sun is never before it.
-    fn query(&self, index: usize, point: &SurfacePoint, side: usize) -> Option<Query> {
-        let ArcFrame { arc_from_bake, lanes, .. } = &self.engine.arcs[index].frame;
-        let normal = if side == 0 { point.normal } else { -point.normal };
-        let (up, facing) = (*arc_from_bake * DVec3::Y, *arc_from_bake * normal);
-        let open = |lane: usize| {
-            let frame = &self.engine.arcs[index].frame;
-            let above = frame.half_space(up, 0.0, lane);
-            Gaps::of_both(above.as_slice(), frame.half_space(facing, 0.0, lane).as_slice())
-        };
-        let gaps: SmallVec<[Gaps; 3]> = (0..lanes.len()).map(open).collect();
-        if gaps.iter().all(Gaps::is_empty) {
-            return None;
-        }
-        let tracer = self.engine.tracer;
-        let start = tracer.lift(point.position_m, normal, point.triangle) * tracer.tracer_from_bake();
-        Some(Query { origin: *arc_from_bake * start, side: facing, gaps })
-    }
-
-    /// Closes all that is hidden.
-    fn answer<S: Simd>(&mut self, simd: S, index: usize, side: usize, query: &mut Query) {
-        if self.engine.wide.nodes.is_empty() {
+    /// Finds the light of one arc on one side of a point.
+    fn light<S: Simd>(&mut self, simd: S, arc: usize, side: usize, point: &SurfacePoint) {
+        let Self { engine, coverers, room: Room { walk, query, lit } } = self;
+        let Arc { frame, frames } = &engine.arcs[arc];
+        if !engine.open(frame, point, side, query) {
             return;
         }
-        let coverer = &mut self.coverers[index][side];
-        self.work.triangles += coverer.close_with_seeds(simd, query);
-        if !query.is_done() {
-            let wanted = Wanted::new(&self.engine.arcs[index].frames, query);
-            let work = close_by_walk(simd, &self.engine.wide, wanted, coverer, query, &mut self.room);
-            self.work = self.work + work;
+        if !engine.wide.nodes.is_empty() {
+            let coverer = &mut coverers[arc][side];
+            walk.work.triangles += coverer.close_with_seeds(simd, query);
+            if !query.is_done() {
+                walk.close(simd, &engine.wide, frames, coverer, query);
+            }
         }
+        for (gaps, times) in query.gaps.iter().zip(lit) {
+            times.extend(gaps.as_slice().iter().map(|span| span.map(|u| frame.t_of(u))));
+        }
+    }
+}
+
+impl ExactEngine<'_> {
+    /// Asks of an arc at one side of a point; whether its sun is ever before it.
+    fn open(&self, frame: &ArcFrame, point: &SurfacePoint, side: usize, query: &mut Query) -> bool {
+        let normal = if side == 0 { point.normal } else { -point.normal };
+        let (up, facing) = (frame.arc_from_bake * DVec3::Y, frame.arc_from_bake * normal);
+        query.gaps.resize_with(frame.lanes.len(), Default::default);
+        for (lane, gaps) in query.gaps.iter_mut().enumerate() {
+            let above = frame.half_space(up, 0.0, lane);
+            gaps.open(above.as_slice(), frame.half_space(facing, 0.0, lane).as_slice());
+        }
+        let start = self.tracer.lift(point.position_m, normal, point.triangle) * self.tracer.tracer_from_bake();
+        query.origin = frame.arc_from_bake * start;
+        query.side = facing;
+        !query.is_done()
     }
 }
 

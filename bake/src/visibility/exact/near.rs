@@ -21,7 +21,7 @@ pub(super) fn hidden_near(frame: &ArcFrame, lane: usize, [a, b, c]: [DVec3; 3], 
 }
 
 /// What two lists of spans have in common.
-pub(super) fn meet(some: &[[f64; 2]], others: &[[f64; 2]]) -> Vec<[f64; 2]> {
+fn meet(some: &[[f64; 2]], others: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let pairs = some.iter().flat_map(|a| others.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
     pairs.filter(|span| span[0] < span[1]).collect()
 }

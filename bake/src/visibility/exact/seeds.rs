@@ -1,7 +1,6 @@
 //! The occluders of the point before, tried first: what hides the sun from a texel mostly hides it from the next.
 
-use super::solve::Packet;
-use super::wide::WIDTH;
+use super::solve::{LANES, Packet};
 use glam::DVec3;
 
 /// Most packets kept from one point for the next.
@@ -17,7 +16,7 @@ pub(super) struct Seeds {
 impl Seeds {
     /// Adds a triangle, given by its corners in the arc's frame; of very many, the last are forgotten.
     pub fn add(&mut self, id: u32, corners: [DVec3; 3]) {
-        let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == WIDTH);
+        let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == LANES);
         if is_full && self.count == MOST_PACKETS {
             return;
         }

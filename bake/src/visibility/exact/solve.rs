@@ -14,18 +14,21 @@
 
 use super::arc::Declination;
 use super::gaps::Gaps;
-use super::wide::WIDTH;
 use fearless_simd::{f64x8, mask64x8, prelude::*};
 use glam::{DMat3, DVec3, Vec3};
+use smallvec::SmallVec;
+
+/// Triangles solved at once.
+pub(super) const LANES: usize = 8;
 
 /// Corners of eight triangles: by corner, axis and triangle.
-pub(super) type Corners = [[[f64; WIDTH]; 3]; 3];
+pub(super) type Corners = [[[f64; LANES]; 3]; 3];
 
 /// Up to eight triangles, corners in the arc's frame.
 #[derive(Default, Clone)]
 pub(super) struct Packet {
     pub corners: Corners,
-    pub ids: [u32; WIDTH],
+    pub ids: [u32; LANES],
     pub count: usize,
 }
 
@@ -41,18 +44,41 @@ impl Packet {
         self.count += 1;
     }
 
+    /// Adds a triangle, not yet in the arc's frame; there must be room.
+    #[inline]
+    pub fn push_unturned(&mut self, id: u32, corners: &[Vec3; 3]) {
+        self.ids[self.count] = id;
+        for (lanes, corner) in self.corners.iter_mut().zip(corners) {
+            for (lane, value) in lanes.iter_mut().zip(corner.to_array()) {
+                lane[self.count] = f64::from(value);
+            }
+        }
+        self.count += 1;
+    }
+
+    /// Turns all triangles into the arc's frame. Every corner goes through here, so that triangles which share it agree
+    /// about it exactly.
+    pub fn turn<S: Simd>(&mut self, simd: S, rotation: &DMat3) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for corner in &mut self.corners {
+                    let x = f64x8::from_slice(simd, &corner[0]);
+                    let y = f64x8::from_slice(simd, &corner[1]);
+                    let z = f64x8::from_slice(simd, &corner[2]);
+                    for (k, lanes) in corner.iter_mut().enumerate() {
+                        let turned = x * rotation.x_axis[k] + y * rotation.y_axis[k] + z * rotation.z_axis[k];
+                        turned.store_slice(lanes);
+                    }
+                }
+            },
+        );
+    }
+
     /// A triangle's corners.
     pub fn corners_of(&self, slot: usize) -> [DVec3; 3] {
         self.corners.each_ref().map(|[x, y, z]| DVec3::new(x[slot], y[slot], z[slot]))
     }
-}
-
-/// A corner in the arc's frame. Every corner goes through here, so that triangles which share it agree about it exactly.
-#[inline]
-pub(super) fn turned(corner: Vec3, rotation: &DMat3) -> DVec3 {
-    rotation.x_axis * f64::from(corner.x)
-        + rotation.y_axis * f64::from(corner.y)
-        + rotation.z_axis * f64::from(corner.z)
 }
 
 /// What eight triangles hide at one declination, within the hull of what is asked about.
@@ -60,16 +86,72 @@ pub(super) fn turned(corner: Vec3, rotation: &DMat3) -> DVec3 {
 pub(super) struct Hidden {
     /// Which hide something.
     pub mask: u32,
-    pub low: [f64; WIDTH],
-    pub high: [f64; WIDTH],
+    pub low: [f64; LANES],
+    pub high: [f64; LANES],
     /// Which have up to three holes in their span, given by `cuts`.
     pub split: u32,
     /// For each edge, the span between `low` and `high` that is not hidden after all, if its end is above its start.
-    pub cuts: [[[f64; WIDTH]; 2]; 3],
+    pub cuts: [[[f64; LANES]; 2]; 3],
 }
 
-/// What eight triangles hide from a point at some declinations, as far as that meets the gaps asked about. Returns the triangles whose plane is within the run-up
-/// (given squared), of which the rest of the answer is not to be believed.
+impl Hidden {
+    /// The span of a triangle less its cuts, if that is one span (or an empty one), as it mostly is.
+    #[inline]
+    pub fn whole(&self, slot: usize) -> Option<[f64; 2]> {
+        let [mut low, mut high] = [self.low[slot], self.high[slot]];
+        if self.split & (1 << slot) == 0 {
+            return Some([low, high]);
+        }
+        for [start, end] in self.cuts.iter().map(|cut| [cut[0][slot], cut[1][slot]]) {
+            match start < end && start < high && end > low {
+                false => {}
+                true if start <= low => low = end,
+                true if end >= high => high = start,
+                true => return None,
+            }
+        }
+        Some([low, high])
+    }
+
+    /// The span of a triangle less its cuts.
+    pub fn pieces(&self, slot: usize) -> SmallVec<[[f64; 2]; 4]> {
+        let mut left = SmallVec::from_buf_and_len([[self.low[slot], self.high[slot]]; 4], 1);
+        if self.split & (1 << slot) != 0 {
+            for cut in &self.cuts {
+                take_out(&mut left, [cut[0][slot], cut[1][slot]]);
+            }
+        }
+        left
+    }
+}
+
+/// Leaves of some spans what does not lie in another.
+fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
+    if start >= end {
+        return;
+    }
+    let mut index = 0;
+    while let Some(&[low, high]) = spans.get(index) {
+        let (before, after) = ([low, high.min(start)], [low.max(end), high]);
+        match [before[0] < before[1], after[0] < after[1]] {
+            [false, false] => {
+                spans.remove(index);
+                continue;
+            }
+            [true, false] => spans[index] = before,
+            [false, true] => spans[index] = after,
+            [true, true] => {
+                spans[index] = before;
+                spans.insert(index + 1, after);
+                index += 1;
+            }
+        }
+        index += 1;
+    }
+}
+
+/// What eight triangles hide from a point at some declinations, as far as that meets the gaps asked about. Returns the
+/// triangles whose plane is within the run-up (given squared), of which the rest of the answer is not to be believed.
 pub(super) fn hide<S: Simd>(
     simd: S,
     corners: &Corners,
@@ -113,7 +195,7 @@ fn edges<S: Simd>(simd: S, corners: &Corners, origin: DVec3, run_up2: f64) -> Ed
 }
 
 #[inline(always)]
-fn relative<S: Simd>(simd: S, corner: &[[f64; WIDTH]; 3], origin: DVec3) -> [f64x8<S>; 3] {
+fn relative<S: Simd>(simd: S, corner: &[[f64; LANES]; 3], origin: DVec3) -> [f64x8<S>; 3] {
     [
         f64x8::from_slice(simd, &corner[0]) - origin.x,
         f64x8::from_slice(simd, &corner[1]) - origin.y,
@@ -165,7 +247,7 @@ fn hide_at<S: Simd>(
             is_split.select(span.end, after).store_slice(&mut hidden.cuts[k][0]);
             is_split.select(span.start, before).store_slice(&mut hidden.cuts[k][1]);
         } else {
-            hidden.cuts[k] = [[3.0; WIDTH], [-3.0; WIDTH]];
+            hidden.cuts[k] = [[3.0; LANES], [-3.0; LANES]];
         }
         // Most triangles are off the sun's way altogether, and one or two edges tell.
         let mut alive = low.simd_lt(low);
@@ -197,17 +279,24 @@ fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> Span<S> {
     let everywhere = c.simd_ge(zero);
     let w = d.max(zero).sqrt();
     let (ca, cb, wa, wb) = (c * a, c * b, w * a, w * b);
-    let start = diamond(simd, wb - ca, zero - cb - wa);
-    let end = diamond(simd, zero - ca - wb, wa - cb);
+    let [start, end] = diamonds(simd, [wb - ca, zero - cb - wa], [zero - ca - wb, wa - cb]);
     let far = f64x8::splat(simd, 3.0);
     let whole_start = everywhere.select(zero - far, far);
     Span { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
 }
 
+/// Two diamond angles by one division: see [`super::arc::diamonds`].
 #[inline(always)]
-fn diamond<S: Simd>(simd: S, x: f64x8<S>, y: f64x8<S>) -> f64x8<S> {
+fn diamonds<S: Simd>(simd: S, [x, y]: [f64x8<S>; 2], [x1, y1]: [f64x8<S>; 2]) -> [f64x8<S>; 2] {
+    let (sum, sum1) = (x.abs() + y.abs(), x1.abs() + y1.abs());
+    let inverse = f64x8::splat(simd, 1.0) / (sum * sum1);
+    [unfold(simd, x, y, y * (sum1 * inverse)), unfold(simd, x1, y1, y1 * (sum * inverse))]
+}
+
+/// Diamond angle of (x, y) from the ratio of y to their sum.
+#[inline(always)]
+fn unfold<S: Simd>(simd: S, x: f64x8<S>, y: f64x8<S>, ratio: f64x8<S>) -> f64x8<S> {
     let zero = f64x8::splat(simd, 0.0);
-    let r = y / (x.abs() + y.abs());
     let side = y.simd_lt(zero).select(f64x8::splat(simd, -2.0), f64x8::splat(simd, 2.0));
-    x.simd_lt(zero).select(side - r, r)
+    x.simd_lt(zero).select(side - ratio, ratio)
 }

@@ -1,78 +1,79 @@
 //! The walk of the hierarchy: near things first, past whatever cannot hide anything that is still lit, until nothing is.
 
-use super::boxes::{Seen, Wanted, node_seen};
+use super::boxes::{Frames, Wanted, leaf_met, node_met};
 use super::cover::{Coverer, Query};
-use super::solve::Packet;
+use super::solve::{LANES, Packet};
 use super::wide::{Child, WIDTH, Wide};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
-/// A node that a walk has yet to go to.
+/// What a walk has yet to go to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pending {
-    node: u32,
-    near: f32,
-    span: [f32; 2],
+struct Pending {
+    child: Child,
+    /// Least squared distance from the axis.
+    near2: f32,
 }
 
-/// Room that walks need, kept from one to the next.
+/// A walk from one point, and the room that it needs, kept from one to the next.
 #[derive(Default)]
-pub(super) struct Room {
+pub(super) struct Walk {
+    wanted: Wanted,
+    pub work: Work,
     stack: Vec<Pending>,
     /// Triangles to be solved together: solid ones, and those with holes.
     collected: [Packet; 2],
 }
 
-/// Closes the query's gaps with whatever lies in the hierarchy. Stops when there is none.
-pub(super) fn close_by_walk<S: Simd>(
-    simd: S,
-    wide: &Wide,
-    mut wanted: Wanted,
-    coverer: &mut Coverer,
-    query: &mut Query,
-    Room { stack, collected }: &mut Room,
-) -> Work {
-    let mut work = Work::default();
-    let mut seen = Seen::default();
-    collected.iter_mut().for_each(|packet| packet.count = 0);
-    stack.clear();
-    stack.push(Pending { node: 0, near: 0.0, span: [-3.0, 3.0] });
-    while let Some(pending) = stack.pop() {
-        if !wanted.wants(pending.span) {
-            continue;
-        }
-        work.nodes += 1;
-        let node = &wide.nodes[pending.node as usize];
-        node_seen(simd, node, &wanted, &mut seen);
-        let first = stack.len();
-        for lane in bits(seen.mask) {
-            let id = match node.child[lane] {
-                Child::Triangle(id) => id,
+impl Walk {
+    /// Closes the query's gaps with whatever lies in the hierarchy. Stops when there is none.
+    pub fn close<S: Simd>(&mut self, simd: S, wide: &Wide, frames: &Frames, coverer: &mut Coverer, query: &mut Query) {
+        self.wanted.look_from(frames, query);
+        self.collected.iter_mut().for_each(|packet| packet.count = 0);
+        self.stack.clear();
+        self.stack.push(Pending { child: Child::ROOT, near2: 0.0 });
+        let mut near2 = [0.0; WIDTH];
+        while let Some(pending) = self.stack.pop() {
+            self.work.nodes += 1;
+            match pending.child {
                 Child::Node(node) => {
-                    let span = [seen.span[0][lane], seen.span[1][lane]];
-                    push_far_first(stack, first, Pending { node, near: seen.near[lane], span });
-                    continue;
-                }
-            };
-            work.triangles += 1;
-            let packet = &mut collected[usize::from(coverer.tracer.has_holes(id))];
-            coverer.add_to(packet, id);
-            if packet.count == WIDTH {
-                let closed = coverer.close(simd, packet, query);
-                packet.count = 0;
-                if closed {
-                    if query.is_done() {
-                        return work;
+                    let node = &wide.nodes[node as usize];
+                    let first = self.stack.len();
+                    for lane in bits(node_met(simd, node, &self.wanted, &mut near2)) {
+                        let pending = Pending { child: node.child[lane], near2: near2[lane] };
+                        push_far_first(&mut self.stack, first, pending);
                     }
-                    wanted.want(query);
+                }
+                Child::Leaf(leaf) => {
+                    let leaf = &wide.leaves[leaf as usize];
+                    for lane in bits(leaf_met(simd, leaf, &self.wanted)) {
+                        self.take(simd, leaf.ids[lane], coverer, query);
+                    }
+                    if query.is_done() {
+                        return;
+                    }
                 }
             }
         }
+        for packet in self.collected.iter_mut().filter(|packet| packet.count > 0) {
+            coverer.turn_and_close(simd, packet, query);
+        }
     }
-    for packet in collected {
-        coverer.close(simd, packet, query);
+
+    /// Takes a triangle, and solves those taken once there are enough.
+    #[inline]
+    fn take<S: Simd>(&mut self, simd: S, id: u32, coverer: &mut Coverer, query: &mut Query) {
+        self.work.triangles += 1;
+        let packet = &mut self.collected[usize::from(coverer.tracer.has_holes(id))];
+        packet.push_unturned(id, &coverer.tracer.corners()[id as usize]);
+        if packet.count == LANES {
+            let closed = coverer.turn_and_close(simd, packet, query);
+            packet.count = 0;
+            if closed {
+                self.wanted.want(query);
+            }
+        }
     }
-    work
 }
 
 /// Pushes a node among its siblings, which start at `first`, so that the nearest is last.
@@ -80,7 +81,7 @@ pub(super) fn close_by_walk<S: Simd>(
 fn push_far_first(stack: &mut Vec<Pending>, first: usize, new: Pending) {
     let mut at = stack.len();
     stack.push(new);
-    while at > first && stack[at - 1].near < new.near {
+    while at > first && stack[at - 1].near2 < new.near2 {
         stack[at] = stack[at - 1];
         at -= 1;
     }

@@ -1,28 +1,40 @@
-//! An eight-wide hierarchy down to single triangles: eight boxes a node, each side of all eight in one vector.
+//! A sixteen-wide hierarchy: sixteen boxes a node, sixteen triangles a leaf, each number of all sixteen in one vector.
 //!
-//! Made from a binary hierarchy by opening, for each node, the largest of its descendants until there are eight (the
-//! usual collapse; Wald, Benthin and Boulos, "Getting rid of packets", 2008). Boxes are held as centres and half sizes,
-//! since those turn into another frame at the cost of two products of a matrix.
-//!
-//! There are no leaves of several triangles: to test eight boxes takes a quarter of the time of solving eight triangles, so
-//! each triangle has its own box, and those that pass are solved together, wherever in the hierarchy they were met.
+//! Made from a binary hierarchy by opening, for each node, the largest of its descendants until there are sixteen (the
+//! usual collapse; Wald, Benthin and Boulos, "Getting rid of packets", 2008). What holds no more triangles than a leaf may is
+//! not opened. Boxes are held as centres and half sizes, since those turn into another frame at the cost of two products of
+//! a matrix. Leaves hold corners, rounded to `f32`: they tell which triangles are worth solving far better than boxes do.
 
 use crate::trace::{BinaryNode, Tracer};
 use glam::{DMat3, Vec3};
 
-/// Lanes of a node.
-pub(super) const WIDTH: usize = 8;
+/// Lanes of a node and of a leaf.
+pub(super) const WIDTH: usize = 16;
+
+/// By axis and lane.
+pub(super) type Points = [[f32; WIDTH]; 3];
 
 /// The hierarchy. Boxes are along axes of the caller's choice. The first node is the root; there is none without triangles.
 pub(super) struct Wide {
     pub nodes: Vec<Node>,
+    pub leaves: Vec<Leaf>,
 }
 
-/// Up to eight boxes. Lanes from `count` on are not to be used.
+/// Up to sixteen boxes. Lanes from `count` on are not to be used.
+#[derive(Default)]
 pub(super) struct Node {
-    pub centre: [[f32; WIDTH]; 3],
-    pub half: [[f32; WIDTH]; 3],
+    pub centre: Points,
+    pub half: Points,
     pub child: [Child; WIDTH],
+    pub count: usize,
+}
+
+/// Up to sixteen triangles. Lanes from `count` on are not to be used.
+#[derive(Default)]
+pub(super) struct Leaf {
+    pub corners: [Points; 3],
+    /// Indices among the tracer's triangles.
+    pub ids: [u32; WIDTH],
     pub count: usize,
 }
 
@@ -31,72 +43,141 @@ pub(super) struct Node {
 pub(super) enum Child {
     /// An index among the nodes.
     Node(u32),
-    /// An index among the tracer's triangles.
-    Triangle(u32),
+    /// An index among the leaves.
+    Leaf(u32),
+}
+
+impl Child {
+    /// Where walks start.
+    pub const ROOT: Self = Self::Node(0);
+}
+
+impl Default for Child {
+    fn default() -> Self {
+        Self::ROOT
+    }
 }
 
 impl Wide {
     /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {
-        let bounds = |triangle: &[Vec3; 3]| {
-            let [a, b, c] = triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
+        let turned = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
+        let bounds = |triangle| {
+            let [a, b, c] = turned(triangle);
             [a.min(b).min(c) - padding, a.max(b).max(c) + padding]
         };
         let boxes: Vec<[Vec3; 2]> = tracer.corners().iter().map(bounds).collect();
         let (tree, order) = crate::trace::binary_hierarchy(&boxes);
-        let mut wide = Self { nodes: Vec::new() };
-        wide.collapse(&tree, &order);
-        wide
+        let mut collapse = Collapse {
+            triangles: triangles_below(&tree),
+            corners: &|id| turned(&tracer.corners()[id as usize]),
+            tree: &tree,
+            order: &order,
+            wide: Self { nodes: Vec::new(), leaves: Vec::new() },
+        };
+        collapse.run();
+        collapse.wide
     }
+}
 
+/// How many triangles each node of a binary hierarchy holds.
+fn triangles_below(tree: &[BinaryNode]) -> Vec<u32> {
+    let mut below: Vec<u32> = tree.iter().map(|node| node.count).collect();
+    let mut order = Vec::new();
+    let mut pending = if tree.is_empty() { vec![] } else { vec![0] };
+    while let Some(index) = pending.pop() {
+        let node = &tree[index as usize];
+        if node.count == 0 {
+            order.push(index as usize);
+            pending.extend([node.first, node.first + 1]);
+        }
+    }
+    for index in order.into_iter().rev() {
+        let first = tree[index].first as usize;
+        below[index] = below[first] + below[first + 1];
+    }
+    below
+}
+
+/// Wide nodes in the making.
+struct Collapse<'a> {
+    tree: &'a [BinaryNode],
+    order: &'a [u32],
+    triangles: Vec<u32>,
+    corners: &'a dyn Fn(u32) -> [Vec3; 3],
+    wide: Wide,
+}
+
+impl Collapse<'_> {
     /// Makes wide nodes of binary ones, parents before children.
-    fn collapse(&mut self, tree: &[BinaryNode], order: &[u32]) {
+    fn run(&mut self) {
         let mut pending = Vec::new();
-        if !tree.is_empty() {
+        if !self.tree.is_empty() {
             pending.push((0, None::<(usize, usize)>));
         }
         while let Some((binary, parent)) = pending.pop() {
-            let index = self.nodes.len();
+            let index = self.wide.nodes.len();
             if let Some((parent, lane)) = parent {
-                self.nodes[parent].child[lane] = Child::Node(index as u32);
+                self.wide.nodes[parent].child[lane] = Child::Node(index as u32);
             }
-            let members = open(tree, binary);
-            let mut node = Node {
-                centre: [[0.0; WIDTH]; 3],
-                half: [[0.0; WIDTH]; 3],
-                child: [Child::Triangle(0); WIDTH],
-                count: members.len(),
-            };
+            let members = self.open(binary);
+            let mut node = Node { count: members.len(), ..Node::default() };
             for (lane, &member) in members.iter().enumerate() {
-                let BinaryNode { bounds: [low, high], count, first } = tree[member as usize];
+                let BinaryNode { bounds: [low, high], .. } = self.tree[member as usize];
                 for k in 0..3 {
                     node.centre[k][lane] = 0.5 * (low[k] + high[k]);
                     node.half[k][lane] = 0.5 * (high[k] - low[k]);
                 }
-                match count {
-                    0 => pending.push((member, Some((index, lane)))),
-                    _ => node.child[lane] = Child::Triangle(order[first as usize]),
+                match self.is_leaf(member) {
+                    true => node.child[lane] = self.leaf(member),
+                    false => pending.push((member, Some((index, lane)))),
                 }
             }
-            self.nodes.push(node);
+            self.wide.nodes.push(node);
         }
     }
-}
 
-/// Up to eight descendants that cover a node: the largest are opened first.
-fn open(tree: &[BinaryNode], binary: u32) -> Vec<u32> {
-    let mut members = vec![binary];
-    while members.len() < WIDTH {
-        let area = |member: u32| {
-            let [low, high] = tree[member as usize].bounds;
-            let size = high - low;
-            size.x * size.y + size.y * size.z + size.z * size.x
-        };
-        let inner = members.iter().copied().filter(|&member| tree[member as usize].count == 0);
-        let Some(largest) = inner.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
-        let first = tree[largest as usize].first;
-        members.retain(|&member| member != largest);
-        members.extend([first, first + 1]);
+    fn is_leaf(&self, member: u32) -> bool {
+        self.triangles[member as usize] as usize <= WIDTH
     }
-    members
+
+    /// Makes a leaf of all that a binary node holds.
+    fn leaf(&mut self, member: u32) -> Child {
+        let mut leaf = Leaf::default();
+        let mut pending = vec![member];
+        while let Some(member) = pending.pop() {
+            let BinaryNode { count, first, .. } = self.tree[member as usize];
+            if count == 0 {
+                pending.extend([first + 1, first]);
+                continue;
+            }
+            for &id in &self.order[first as usize..][..count as usize] {
+                for (points, corner) in leaf.corners.iter_mut().zip((self.corners)(id)) {
+                    (0..3).for_each(|k| points[k][leaf.count] = corner[k]);
+                }
+                leaf.ids[leaf.count] = id;
+                leaf.count += 1;
+            }
+        }
+        self.wide.leaves.push(leaf);
+        Child::Leaf(self.wide.leaves.len() as u32 - 1)
+    }
+
+    /// Up to sixteen descendants that cover a node: the largest are opened first.
+    fn open(&self, binary: u32) -> Vec<u32> {
+        let mut members = vec![binary];
+        while members.len() < WIDTH {
+            let area = |member: u32| {
+                let [low, high] = self.tree[member as usize].bounds;
+                let size = high - low;
+                size.x * size.y + size.y * size.z + size.z * size.x
+            };
+            let inner = members.iter().copied().filter(|&member| !self.is_leaf(member));
+            let Some(largest) = inner.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
+            let first = self.tree[largest as usize].first;
+            members.retain(|&member| member != largest);
+            members.extend([first, first + 1]);
+        }
+        members
+    }
 }
