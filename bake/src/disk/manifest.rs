@@ -268,7 +268,7 @@ pub struct Stats {
     pub engine: String,
     /// Rays traced; none by the exact engine.
     pub rays: u64,
-    /// Hierarchy nodes that the exact engine looked into, eight boxes each.
+    /// Hierarchy nodes that the exact engine looked into: sixteen boxes, or sixteen triangles' corners, each.
     #[serde(default)]
     pub node_tests: u64,
     /// Triangles that the exact engine solved.
