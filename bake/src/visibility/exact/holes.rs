@@ -4,8 +4,8 @@
 //! coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of the edge normals with the direction.
 //! With `s = tan(h / 2)` a direction is `(1 - s^2, 2 s, 1 + s^2)`, less a factor that falls out, so coordinates are quotients
 //! of quadratics in s, `U / W` and `V / W`. A border between two columns of texels is crossed where `U - k W = 0`: again known
-//! in closed form. So the curve is followed from texel to texel, and none is skipped, but for its first microseconds. Squares of texels that are solid or clear
-//! throughout are crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of
+//! in closed form. So the curve is followed from texel to texel, and none is skipped but in its first microseconds. Squares of
+//! texels that are solid or clear throughout are crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of
 //! a half space.
 //!
 //! **Practice.** A curve is cut where a coordinate turns back ([`Curve`]), and where s would grow beyond one. On each piece
