@@ -4,11 +4,12 @@
 //! 2004). Data flows one way, and the modules read in that order; [`bake`] is the flow itself:
 //!
 //! ```text
-//! scene -> atlas -> visibility -> maps -> disk
-//!             ^         ^
-//!         sun, lamp   trace
+//! scene -> atlas -> visibility, ambient -> maps -> disk
+//!                        ^
+//!                sun, lamp, trace
 //! ```
 
+pub mod ambient;
 pub mod atlas;
 mod bake;
 pub mod disk;

@@ -6,6 +6,7 @@
 use crate::disk::manifest::EffectEntry;
 use crate::lamp::LampPath;
 use crate::scene::{Alpha, Scene};
+use crate::settings::{AmbientRequest, BakeSettings};
 use crate::sun::SunPath;
 
 /// An effect that a bake may hold.
@@ -25,6 +26,14 @@ pub enum Effect {
     DoubleSided,
     /// Share of the sky that texels see.
     AmbientOcclusion,
+    /// Nothing beyond a distance hides the sky.
+    AmbientDistance,
+    /// From where texels see the sky.
+    BentNormals,
+    /// How a sky of any brightness adds up at texels.
+    SkyHarmonics,
+    /// Openness of vertices.
+    VertexAmbient,
 }
 
 impl Effect {
@@ -38,6 +47,10 @@ impl Effect {
             Self::AlphaCut => "alpha-cut",
             Self::DoubleSided => "double-sided",
             Self::AmbientOcclusion => "ambient-occlusion",
+            Self::AmbientDistance => "ambient-distance",
+            Self::BentNormals => "bent-normals",
+            Self::SkyHarmonics => "sky-sh2",
+            Self::VertexAmbient => "vertex-ambient",
         }
     }
 }
@@ -61,15 +74,19 @@ pub struct EffectPlan {
 }
 
 impl EffectPlan {
-    /// Decides from the scene, the paths and the number of lanes asked for; `no_sun` says why there is no sun's path.
+    /// Decides from the scene, the paths and what is asked for; `no_sun` says why there is no sun's path.
     pub fn new(
         scene: &Scene,
         path: Option<&SunPath>,
         lamp: Option<&LampPath>,
-        lane_count: usize,
+        settings: &BakeSettings,
         no_sun: &str,
     ) -> Self {
         let decide = |effect, is_on, why: String| Decision { effect, is_on, why };
+        let lane_count = settings.lane_count;
+        let is_asked = settings.bakes_intervals;
+        let (path, lamp) = (path.filter(|_| is_asked), lamp.filter(|_| is_asked));
+        let no_sun = if is_asked { no_sun } else { "--only asks for no intervals" };
         let radius_deg = path.map_or(0.0, |p| p.angular_radius_rad.to_degrees());
         let cut = count(scene, |m| matches!(m.alpha, Alpha::Cut { .. }));
         let double_sided = count(scene, |m| m.is_double_sided && m.alpha != Alpha::Air);
@@ -86,8 +103,10 @@ impl EffectPlan {
                     double_sided > 0,
                     format!("{double_sided} drawn surfaces are double-sided"),
                 ),
-                decide(Effect::AmbientOcclusion, false, "this version does not bake it".into()),
-            ],
+            ]
+            .into_iter()
+            .chain(ambient(settings))
+            .collect(),
         }
     }
 
@@ -106,6 +125,51 @@ impl EffectPlan {
         let entry = |d: &Decision| EffectEntry { effect: d.effect.name().into(), on: d.is_on, why: d.why.clone() };
         self.decisions.iter().map(entry).collect()
     }
+}
+
+/// What of ambient light is baked, and why.
+fn ambient(settings: &BakeSettings) -> Vec<Decision> {
+    let request = settings.ambient.as_ref();
+    let decide = |effect, is_on: bool, on: &dyn Fn(&AmbientRequest) -> String, off: &str| {
+        let why = request.filter(|_| is_on).map_or_else(|| off.to_owned(), on);
+        Decision { effect, is_on, why }
+    };
+    let is = |has: fn(&AmbientRequest) -> bool| request.is_some_and(has);
+    vec![
+        decide(
+            Effect::AmbientOcclusion,
+            request.is_some(),
+            &|r| match r.estimate.error {
+                Some(error) => format!("to {error} with 95 % confidence, by {} rays a texel at most", r.estimate.rays),
+                None => format!("{} rays a texel", r.estimate.rays),
+            },
+            "--only asks for no ao",
+        ),
+        decide(
+            Effect::AmbientDistance,
+            is(|r| r.estimate.distance_m.is_some()),
+            &|r| format!("nothing hides from beyond {} m", r.estimate.distance_m.unwrap_or_default()),
+            "everything hides, however far; --ao-distance sets a limit, which closed rooms need",
+        ),
+        decide(
+            Effect::BentNormals,
+            is(|r| r.estimate.wants_bent),
+            &|_| "--bent asks for them".into(),
+            "not asked for; --bent bakes them",
+        ),
+        decide(
+            Effect::SkyHarmonics,
+            is(|r| r.estimate.wants_sky),
+            &|_| "--sky sh2: nine coefficients a texel".into(),
+            "not asked for; --sky sh2 bakes them",
+        ),
+        decide(
+            Effect::VertexAmbient,
+            is(|r| r.vertices.is_some()),
+            &|r| format!("--ao-vertices asks for {}", r.vertices.map_or("", |v| v.name())),
+            "not asked for; --ao-vertices stores it for engines without a second set of coordinates",
+        ),
+    ]
 }
 
 /// Why there is a lamp, or is none.

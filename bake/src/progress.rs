@@ -13,6 +13,8 @@ pub enum Stage {
     Visibility,
     /// Finding when the lamp is seen. Counts texels.
     Lamp,
+    /// Finding how much of the sky is seen. Counts texels.
+    Ambient,
     /// Turning them into codes. Counts texels.
     Encode,
     /// Writing files. Counts nothing.
@@ -28,6 +30,7 @@ impl Stage {
             Self::Bvh => "building the hierarchy",
             Self::Visibility => "tracing the sun",
             Self::Lamp => "tracing the lamp",
+            Self::Ambient => "tracing the sky",
             Self::Encode => "encoding",
             Self::Write => "writing",
         }

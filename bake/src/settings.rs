@@ -1,5 +1,6 @@
 //! What a bake is asked for. Presets fill every field; a flag overrides one.
 
+use crate::ambient::AmbientSettings;
 use crate::atlas::Density;
 use crate::lamp::LampPath;
 use crate::maps::Bits;
@@ -32,6 +33,10 @@ pub struct BakeSettings {
     /// path; with more they soften in as many steps. Maps, and what playback reads, grow with the number. A light without
     /// width has one lane whatever is asked.
     pub lane_count: usize,
+    /// Whether it is baked when texels see the sun and the lamp.
+    pub bakes_intervals: bool,
+    /// How much of the sky texels see, if that is baked.
+    pub ambient: Option<AmbientRequest>,
     /// How lit intervals are found.
     pub engine: EngineChoice,
     /// Whether to write, for each page, where storing lost minutes. Takes 24 bytes a texel of a page while it is baked.
@@ -43,6 +48,50 @@ pub struct BakeSettings {
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
     pub max_memory_bytes: u64,
+}
+
+/// What ambient light to bake, and how to store it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AmbientRequest {
+    /// What is estimated, with how many rays.
+    pub estimate: AmbientSettings,
+    /// Points of a texel along each of its edges, 1 to 8, usually 1 or 2, on which its rays are spread. Takes no more rays:
+    /// it trades noise within a texel for what a single point would miss.
+    pub supersample: u32,
+    /// Bits of a stored openness; bent normals and the sky always have 16.
+    pub bits: Bits,
+    /// Whether the numbers themselves are written beside the textures, as OpenEXR of `f32`.
+    pub exr: bool,
+    /// Whether, and how, openness is also stored at vertices.
+    pub vertices: Option<VertexAttribute>,
+}
+
+/// How openness is stored at vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VertexAttribute {
+    /// Multiplied into `COLOR_0`, which every viewer multiplies into the base colour.
+    Color,
+    /// As `_AO`, a number of its own, for an engine that knows of it.
+    Ao,
+}
+
+impl VertexAttribute {
+    /// Its name in glTF.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Color => "COLOR_0",
+            Self::Ao => "_AO",
+        }
+    }
+}
+
+impl AmbientRequest {
+    /// So many rays a texel, openness alone.
+    pub fn with_rays(rays: u32) -> Self {
+        let estimate =
+            AmbientSettings { rays, distance_m: None, error: None, wants_bent: false, wants_sky: false, seed: 0 };
+        Self { estimate, supersample: 1, bits: Bits::Sixteen, exr: false, vertices: None }
+    }
 }
 
 /// Which sun to bake.
@@ -116,19 +165,20 @@ impl std::fmt::Display for EngineChoice {
 }
 
 impl BakeSettings {
-    /// A look in seconds: one page of 512, 8 bits.
+    /// A look in seconds: one page of 512, 8 bits, 64 rays of sky.
     pub fn draft(sun: SunRequest) -> Self {
         Self {
             density: Density::Pages(1),
             page_size_texels: 512,
             bits: Bits::Eight,
             layer_cap: 2,
+            ambient: Some(AmbientRequest { bits: Bits::Eight, ..AmbientRequest::with_rays(64) }),
             max_memory_bytes: 4 << 30,
             ..Self::standard(sun)
         }
     }
 
-    /// Good for a game level: one page of 2048, 16 bits.
+    /// Good for a game level: one page of 2048, 16 bits, 256 rays of sky.
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
@@ -140,6 +190,8 @@ impl BakeSettings {
             bits: Bits::Sixteen,
             layer_cap: 4,
             lane_count: 1,
+            bakes_intervals: true,
+            ambient: Some(AmbientRequest::with_rays(256)),
             engine: EngineChoice::Exact,
             loss_map: false,
             edge_seconds: 1.0,
@@ -148,8 +200,9 @@ impl BakeSettings {
         }
     }
 
-    /// To keep: one page of 4096, 16 bits, as many layers as anything needs.
+    /// To keep: one page of 4096, 16 bits, as many layers as anything needs, 1024 rays of sky.
     pub fn last(sun: SunRequest) -> Self {
-        Self { page_size_texels: 4096, layer_cap: 8, max_memory_bytes: 16 << 30, ..Self::standard(sun) }
+        let ambient = Some(AmbientRequest::with_rays(1024));
+        Self { page_size_texels: 4096, layer_cap: 8, ambient, max_memory_bytes: 16 << 30, ..Self::standard(sun) }
     }
 }

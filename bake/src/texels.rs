@@ -3,7 +3,7 @@
 
 use crate::atlas::{self, Atlas, Sample};
 use crate::disk::read::BakedSet;
-use crate::maps::{Bits, LaneMaps, stored_intervals};
+use crate::maps::{AmbientSide, Bits, LaneMaps, decode_open, decode_signed, stored_intervals};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
 use crate::trace::Tracer;
 use glam::DVec3;
@@ -38,8 +38,17 @@ pub struct Texel {
     /// When the texel sees the lamp, as stored, if the set has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lamp: Option<Vec<[f64; 2]>>,
-    /// Ambient occlusion as stored, 0 is occluded, if the set has it.
+    /// Ambient occlusion of the front as stored, 0 is occluded, if the set has it.
     pub ao: Option<f64>,
+    /// That of the back, of double-sided surfaces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ao_back: Option<f64>,
+    /// Bent normal of the front as stored, world space, if the set has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bent: Option<[f64; 3]>,
+    /// Sky visibility of the front in spherical harmonics as stored, if the set has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sky: Option<[f64; 9]>,
 }
 
 /// What is stored of one texel along one lane.
@@ -82,6 +91,9 @@ fn describe(
     let world = |p: DVec3| (p + scene.centre_m).to_array();
     let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
     let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
+    let texel = sample.texel as usize;
+    let front = maps.ambient.as_ref().map(|ambient| &ambient.front);
+    let back = maps.ambient.as_ref().and_then(|ambient| ambient.back.as_ref());
     Texel {
         atlas: page,
         x: sample.texel % maps.width,
@@ -95,8 +107,19 @@ fn describe(
         lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
         lanes: if lanes.len() > 1 { lanes } else { Vec::new() },
         lamp: maps.lamp.as_ref().map(|layers| stored_intervals(layers, sample.texel as usize, set.bits)),
-        ao: maps.ao.as_ref().map(|ao| f64::from(ao[sample.texel as usize]) / 65_535.0),
+        ao: front.map(|side| openness(side, texel)),
+        ao_back: back.filter(|_| point.is_double_sided).map(|side| openness(side, texel)),
+        bent: front.and_then(|side| side.bent.as_ref()).map(|bent| bent[texel].map(decoded)),
+        sky: front.and_then(|side| side.sky.as_ref()).map(|sky| sky[texel].map(decoded)),
     }
+}
+
+fn openness(side: &AmbientSide, texel: usize) -> f64 {
+    f64::from(decode_open(side.open[texel]))
+}
+
+fn decoded(code: u16) -> f64 {
+    f64::from(decode_signed(code))
 }
 
 fn of_lane(LaneMaps { lane, layers }: &LaneMaps, texel: usize, bits: Bits) -> TexelLane {

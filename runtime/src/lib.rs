@@ -31,4 +31,4 @@ pub use image::Raster;
 pub use light::Moment;
 pub use shot::Shot;
 pub use stage::Stage;
-pub use sunbake_shaders::Filter;
+pub use sunbake_shaders::{AmbientModel, Filter};

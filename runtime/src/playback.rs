@@ -1,10 +1,11 @@
 //! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl`,
-//! `lamp_baked.wgsl` and `openness_baked.wgsl`, around [`sunbake::maps::soft_visibility`].
+//! `lamp_baked.wgsl` and `ambient_*.wgsl`, around [`sunbake::maps::soft_visibility`].
 
 use crate::light::{LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
-use sunbake::maps::{Bits, PageMaps, soft_visibility};
-use sunbake_shaders::{Filter, LaneVariant, PageVariant};
+use std::ops::{Add, Mul};
+use sunbake::maps::{AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, soft_visibility};
+use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
 /// What programs that read a page must know of it. `radius_rad` is the sun's angular radius.
 pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant {
@@ -18,8 +19,30 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
         max_code: bits.max_code(),
         lanes: page.lanes.iter().map(lane).collect(),
         lamp_layer_count,
-        has_ao: page.ao.is_some(),
+        ambient: ambient_model(page),
+        has_backs: page.ambient.as_ref().is_some_and(|ambient| ambient.back.is_some()),
     }
+}
+
+/// The best that a page's maps of ambient light allow.
+fn ambient_model(page: &PageMaps) -> AmbientModel {
+    match &page.ambient {
+        None => AmbientModel::Hemisphere,
+        Some(ambient) if ambient.front.sky.is_some() => AmbientModel::Sky,
+        Some(ambient) if ambient.front.bent.is_some() => AmbientModel::Bent,
+        Some(_) => AmbientModel::Openness,
+    }
+}
+
+/// Bytes a texel that the model of ambient light reads, as a GPU holds them.
+pub fn ambient_bytes(variant: &PageVariant) -> u64 {
+    let a_side = match variant.ambient {
+        AmbientModel::Hemisphere => 0,
+        AmbientModel::Openness => 2,
+        AmbientModel::Bent => 2 + 8,
+        AmbientModel::Sky => 3 * 8,
+    };
+    a_side * if variant.has_backs { 2 } else { 1 }
 }
 
 /// A page ready to be evaluated.
@@ -88,24 +111,47 @@ impl<'a> Page<'a> {
         })
     }
 
-    /// How much of the sky is seen; all of it where there is no ambient occlusion map.
-    pub fn openness(&self, page_uv: Vec2) -> f32 {
-        let Some(ao) = &self.maps.ao else { return 1.0 };
+    /// Light from all around on a surface with this normal, turned to the eye; `is_back`: the eye is behind the surface.
+    /// Twin of `ambient_hemisphere.wgsl`, `ambient_openness.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
+    pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, moment: &Moment) -> Vec3 {
+        let light = &moment.daylight;
+        let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);
+        let of_normal = 0.5 + 0.5 * normal.y;
+        let Some(ambient) = &self.maps.ambient else { return hemisphere(of_normal) };
+        let side = side_of_page(ambient, is_back);
         let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
-        let at =
-            |texel: IVec2| f32::from(ao[texel.y as usize * self.maps.width as usize + texel.x as usize]) / 65_535.0;
-        bilinear(page_uv, last, at)
+        let index = |texel: IVec2| texel.y as usize * self.maps.width as usize + texel.x as usize;
+        let open = || bilinear(page_uv, last, |texel| decode_open(side.open[index(texel)]));
+        match (&side.sky, &side.bent) {
+            (Some(sky), _) => {
+                let light_at = |texel| {
+                    let codes = sky[index(texel)].iter().zip(&moment.sky);
+                    codes.map(|(&code, &of_sky)| of_sky * decode_signed(code)).sum::<Vec3>()
+                };
+                bilinear(page_uv, last, light_at).max(Vec3::ZERO)
+            }
+            (None, Some(bent)) => {
+                let height = bilinear(page_uv, last, |texel| decode_signed(bent[index(texel)][1]));
+                hemisphere((0.5 + 0.75 * height).clamp(0.0, 1.0)) * open()
+            }
+            (None, None) => hemisphere(of_normal) * open(),
+        }
     }
 }
 
+/// The maps of the side that the eye is on.
+fn side_of_page(ambient: &AmbientMaps, is_back: bool) -> &AmbientSide {
+    ambient.back.as_ref().filter(|_| is_back).unwrap_or(&ambient.front)
+}
+
 /// Four texels evaluated, then blended.
-fn bilinear(page_uv: Vec2, last: IVec2, value: impl Fn(IVec2) -> f32) -> f32 {
+fn bilinear<T: Mul<f32, Output = T> + Add<Output = T>>(page_uv: Vec2, last: IVec2, value: impl Fn(IVec2) -> T) -> T {
     let place = page_uv * (last + 1).as_vec2() - 0.5;
     let base = place.floor();
     let weight = place - base;
     let low = base.as_ivec2().clamp(IVec2::ZERO, last);
     let high = (base.as_ivec2() + 1).clamp(IVec2::ZERO, last);
-    let mix = |a: f32, b: f32, weight: f32| a * (1.0 - weight) + b * weight;
+    let mix = |a: T, b: T, weight: f32| a * (1.0 - weight) + b * weight;
     let top = mix(value(low), value(IVec2::new(high.x, low.y)), weight.x);
     let bottom = mix(value(IVec2::new(low.x, high.y)), value(high), weight.x);
     mix(top, bottom, weight.y)

@@ -48,11 +48,14 @@ fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: 
     let texture = texture_color(shot, &corners, hit, front, ray);
     let base_color = material.base_color * blend(corners.color, weights) * texture;
     let normal = towards_eye(blend(corners.normal, weights).normalize_or(front), front, ray);
-    let open = match stage.chart(stage.geometry.instance[triangle] as usize) {
-        Some(chart) => pages[chart.page as usize].openness(blend(corners.page_uv, weights)),
-        None => 1.0,
+    let ambient = match stage.chart(stage.geometry.instance[triangle] as usize) {
+        Some(chart) => {
+            let page_uv = blend(corners.page_uv, weights);
+            pages[chart.page as usize].ambient_light(page_uv, normal, front.dot(ray) > 0.0, moment)
+        }
+        None => moment.daylight.ground_light.lerp(moment.daylight.sky_light, 0.5 + 0.5 * normal.y),
     };
-    let light = shade(material, base_color.xyz(), normal, moment, seen.sun, open);
+    let light = shade(material, base_color.xyz(), normal, moment, seen.sun, ambient);
     let of_lamp = moment.lamp.filter(|_| !material.is_unlit).map(|lamp| {
         let way_m = lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3();
         lamp.on(base_color.xyz(), normal, way_m, seen.lamp)
@@ -77,13 +80,11 @@ fn texture_color(shot: &Shot, corners: &Corners, hit: &Hit, front: Vec3, ray: Ve
     mips.sample(image_uv, texels.max(1.0).log2(), texture.wrap)
 }
 
-/// Light on a matt surface: the sun so far as it is seen, a sky above, the ground's glow from below.
-fn shade(material: &Material, base_color: Vec3, normal: Vec3, moment: &Moment, visibility: f32, open: f32) -> Vec3 {
+/// Light on a matt surface: the sun so far as it is seen, and whatever comes from all around.
+fn shade(material: &Material, base_color: Vec3, normal: Vec3, moment: &Moment, visibility: f32, ambient: Vec3) -> Vec3 {
     if material.is_unlit {
         return base_color + material.emissive;
     }
-    let light = &moment.daylight;
-    let sun = light.sun_light * (visibility * normal.dot(moment.sun_direction).max(0.0));
-    let sky = light.ground_light.lerp(light.sky_light, 0.5 + 0.5 * normal.y) * open;
-    base_color * (sun + sky) + material.emissive
+    let sun = moment.daylight.sun_light * (visibility * normal.dot(moment.sun_direction).max(0.0));
+    base_color * (sun + ambient) + material.emissive
 }

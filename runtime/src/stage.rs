@@ -1,6 +1,7 @@
 //! A baked set and its scene, joined: what every technique draws.
 
 use crate::light::{LampMoment, Moment};
+use crate::playback::page_variant;
 use crate::sides::{Sides, sides};
 use crate::texture::MipChain;
 use glam::{DMat3, Vec2, Vec3, Vec4};
@@ -14,6 +15,7 @@ use sunbake::scene::alpha::{blend, image_uvs};
 use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene};
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
+use sunbake_shaders::AmbientModel;
 
 /// Memory that a set's own scene may take: what was baked was read once already.
 const MAX_SCENE_BYTES: u64 = 16 << 30;
@@ -118,6 +120,43 @@ impl Stage {
     /// The same stage with the lamp whose times are in the pages; its path in world space.
     pub fn with_lamp(self, lamp: Option<&LampPath>) -> Self {
         Self { lamp: lamp.map(|path| path.relative_to(self.scene.centre_m)), ..self }
+    }
+
+    /// The same stage without the maps that a model of ambient light has no use for: what is drawn from it reads, binds and
+    /// uploads no more than that model does. A model that the maps do not allow falls back to the best that they do.
+    pub fn with_ambient(mut self, model: AmbientModel) -> Self {
+        for page in &mut self.pages {
+            if model == AmbientModel::Hemisphere {
+                page.ambient = None;
+            }
+            let sides = page
+                .ambient
+                .iter_mut()
+                .flat_map(|ambient| std::iter::once(&mut ambient.front).chain(&mut ambient.back));
+            for side in sides {
+                side.sky = side.sky.take().filter(|_| model == AmbientModel::Sky);
+                side.bent = side.bent.take().filter(|_| model >= AmbientModel::Bent);
+            }
+        }
+        self
+    }
+
+    /// The best model of ambient light that the maps of every page allow.
+    pub fn best_ambient(&self) -> AmbientModel {
+        let models = self.pages.iter().map(|page| page_variant(page, self.bits, 0.0).ambient);
+        models.min().unwrap_or_default()
+    }
+
+    /// The same stage without the sun's times: none is read, bound or uploaded.
+    pub fn without_sun(mut self) -> Self {
+        self.pages.iter_mut().for_each(|page| page.lanes.clear());
+        self
+    }
+
+    /// The same stage without its lamp.
+    pub fn without_lamp(mut self) -> Self {
+        self.pages.iter_mut().for_each(|page| page.lamp = None);
+        Self { lamp: None, ..self }
     }
 
     /// The lamp at `t`, if there is one.

@@ -1,7 +1,7 @@
 //! Counts of pipelines, textures, bindings and targets, held against scenes. These tests need a GPU adapter.
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
-use sunbake::maps::Bits;
+use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, block, opaque};
 use sunbake_runtime::gpu::{Census, Gpu};
@@ -79,11 +79,22 @@ fn an_empty_scene_needs_the_sky_alone() {
 #[test]
 fn ambient_occlusion_is_bound_only_where_a_set_has_it() {
     let mut stage = bake(SceneBuilder::new().soup(&cube()).build(), None, 8, Bits::Sixteen);
-    assert_eq!(census(&stage, false).ao_textures, 0);
+    assert_eq!(census(&stage, false).ambient_textures, 0);
     let texels = stage.pages[0].width as usize * stage.pages[0].height as usize;
-    stage.pages[0].ao = Some(vec![40_000; texels]);
-    let found = census(&stage, false);
-    assert_eq!((found.ao_textures, found.time_textures, found.map_bytes), (1, 0, texels as u64 * 2));
+    let mut with = |front: AmbientSide, back: Option<AmbientSide>| {
+        stage.pages[0].ambient = Some(AmbientMaps { front, back });
+        let found = census(&stage, false);
+        assert_eq!(found.time_textures, 0);
+        (found.ambient_textures, found.sky_bindings, found.map_bytes / texels as u64)
+    };
+    let open = AmbientSide { open: vec![40_000; texels], ..AmbientSide::default() };
+    let bent = AmbientSide { bent: Some(vec![[40_000; 3]; texels]), ..open.clone() };
+    let sky = AmbientSide { sky: Some(vec![[40_000; 9]; texels]), ..bent.clone() };
+    assert_eq!(with(open.clone(), None), (1, 0, 2));
+    assert_eq!(with(open.clone(), Some(open)), (1, 0, 4));
+    assert_eq!(with(bent, None), (2, 0, 10));
+    assert_eq!(with(sky.clone(), None), (1, 1, 24));
+    assert_eq!(with(sky.clone(), Some(sky)), (1, 1, 48));
 }
 
 #[test]

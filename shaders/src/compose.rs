@@ -51,8 +51,24 @@ pub struct PageVariant {
     pub lanes: Vec<LaneVariant>,
     /// Array layers of the lamp's textures. None: there is no lamp in the set, or no texel of the page ever sees it.
     pub lamp_layer_count: u32,
-    /// Whether there is an ambient occlusion map.
-    pub has_ao: bool,
+    /// What ambient light is made of.
+    pub ambient: AmbientModel,
+    /// Whether maps of ambient light hold what backs see as well.
+    pub has_backs: bool,
+}
+
+/// What ambient light on a page's surfaces is made of: each knows more than the one before it, and reads more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub enum AmbientModel {
+    /// The normal alone: `(1 + n.y) / 2` of sky. No map.
+    #[default]
+    Hemisphere,
+    /// That, times ambient occlusion.
+    Openness,
+    /// The same about the bent normal.
+    Bent,
+    /// The sky of the moment in spherical harmonics, against each texel's visibility of it.
+    Sky,
 }
 
 impl PageVariant {
@@ -79,7 +95,7 @@ pub fn depth_shader(surface: SurfaceVariant) -> String {
 /// The lit pass: entry points `surface_vertex` and `lit_fragment`.
 pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = shading(surface, page, filter);
-    text.push_str(if page.has_ao { wgsl!("openness_baked") } else { wgsl!("openness_none") });
+    push_ambient(&mut text, page);
     text.push_str(wgsl!("shade"));
     push_lamp(&mut text, page, filter);
     text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp_shade") } else { wgsl!("lamp_shade_none") });
@@ -126,6 +142,20 @@ fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
         let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
     }
     text
+}
+
+/// Light from all around.
+fn push_ambient(text: &mut String, page: &PageVariant) {
+    text.push_str(if page.has_backs { wgsl!("side_two") } else { wgsl!("side_one") });
+    if matches!(page.ambient, AmbientModel::Openness | AmbientModel::Bent) {
+        text.push_str(wgsl!("openness"));
+    }
+    text.push_str(match page.ambient {
+        AmbientModel::Hemisphere => wgsl!("ambient_hemisphere"),
+        AmbientModel::Openness => wgsl!("ambient_openness"),
+        AmbientModel::Bent => wgsl!("ambient_bent"),
+        AmbientModel::Sky => wgsl!("ambient_sky"),
+    });
 }
 
 /// What is seen of the lamp.

@@ -12,10 +12,10 @@ mod uniforms;
 mod vertex;
 
 pub use compose::{
-    Filter, LaneVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader, lit_shader, sky_shader,
-    visibility_shader,
+    AmbientModel, Filter, LaneVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader, lit_shader,
+    sky_shader, visibility_shader,
 };
-pub use uniforms::{FrameUniform, LampUniform, MaterialUniform, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
+pub use uniforms::{FrameUniform, LampUniform, MaterialUniform, SkyUniform, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
 pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};
 
 /// How an engine of one's own evaluates a map, in WGSL.

@@ -85,6 +85,14 @@ pub struct LampUniform {
     pub pad: [f32; 2],
 }
 
+/// The sky at a moment, in spherical harmonics. `Sky` in `ambient_sky.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct SkyUniform {
+    /// Red, green and blue of each coefficient, in the order of [`AmbientModel::Sky`](crate::AmbientModel::Sky)'s maps.
+    pub coefficients: [[f32; 4]; 9],
+}
+
 /// A material. `Material` in `frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

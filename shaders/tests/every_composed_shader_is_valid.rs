@@ -26,13 +26,20 @@ fn surfaces() -> Vec<SurfaceVariant> {
 fn pages() -> Vec<PageVariant> {
     let lane = |layer_count, weight| LaneVariant { layer_count, weight, chord: 0.75 };
     let lanes = [vec![], vec![lane(0, 1.0)], vec![lane(1, 1.0)], vec![lane(2, 0.25), lane(4, 0.5), lane(0, 0.25)]];
-    let with = |lanes: &Vec<LaneVariant>, max_code, has_ao, lamp_layer_count| PageVariant {
+    let with = |lanes: &Vec<LaneVariant>, max_code, ambient, lamp_layer_count| PageVariant {
         max_code,
         lanes: lanes.clone(),
         lamp_layer_count,
-        has_ao,
+        ambient,
+        has_backs: lamp_layer_count > 0,
     };
-    lanes.iter().flat_map(|l| [with(l, 255, false, 0), with(l, 65_535, true, 0), with(l, 65_535, true, 3)]).collect()
+    let of_lanes = |l| {
+        let ambient = [AmbientModel::Openness, AmbientModel::Bent, AmbientModel::Sky];
+        let plain = with(l, 255, AmbientModel::Hemisphere, 0);
+        std::iter::once(plain)
+            .chain(ambient.into_iter().flat_map(move |a| [with(l, 65_535, a, 0), with(l, 65_535, a, 3)]))
+    };
+    lanes.iter().flat_map(of_lanes).collect()
 }
 
 #[test]
@@ -68,10 +75,14 @@ fn what_a_page_has_not_is_not_in_its_program() {
     let all = PageVariant {
         max_code: 255,
         lanes: vec![LaneVariant { layer_count: 1, weight: 1.0, chord: 1.0 }],
-        lamp_layer_count: 0,
-        has_ao: true,
+        ambient: AmbientModel::Openness,
+        ..PageVariant::default()
     };
     assert_eq!(names(&all, plain), ["frame", "materials", "rise_map", "fall_map", "ao_map"]);
+    let bent = PageVariant { ambient: AmbientModel::Bent, ..PageVariant::default() };
+    assert_eq!(names(&bent, plain), ["frame", "materials", "ao_map", "bent_map"]);
+    let sky = PageVariant { ambient: AmbientModel::Sky, ..PageVariant::default() };
+    assert_eq!(names(&sky, plain), ["frame", "materials", "sky", "sky_map"]);
     let lamp = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
     assert_eq!(names(&lamp, plain), ["frame", "materials", "lamp", "lamp_rise_map", "lamp_fall_map"]);
 }
@@ -99,6 +110,9 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
     let lit = validated(&lamp_visibility_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
     let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, balls_per_metre);
     assert_eq!(members(&lit, "Lamp"), (rust, size_of::<LampUniform>() as u32));
+    let page = PageVariant { ambient: AmbientModel::Sky, ..PageVariant::default() };
+    let lit = validated(&lit_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
+    assert_eq!(members(&lit, "Sky"), (offsets!(SkyUniform: coefficients), size_of::<SkyUniform>() as u32));
     let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
     assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));
 }

@@ -28,7 +28,7 @@ mod unwrap;
 
 pub use build::{AtlasError, build};
 pub use gutter::{GutterTexel, gutter};
-pub use samples::{by_tiles, sample_page, surface_point};
+pub use samples::{by_tiles, sample_finer, sample_page, surface_point};
 
 /// What an atlas is built to.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -89,9 +89,16 @@ impl Patch {
 
 /// Every covered texel of a page with its surface point. A texel is covered if some triangle touches it.
 pub fn sample_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32) -> PageSamples {
-    let Some(&size) = atlas.pages.get(page as usize) else {
+    sample_finer(scene, geometry, atlas, page, 1)
+}
+
+/// The same on a grid that is `finer` times as fine along each edge: every texel is cut into that many by that many, and
+/// those that some triangle touches have a point each. `texel` counts in the finer grid.
+pub fn sample_finer(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, finer: u32) -> PageSamples {
+    let Some(&PageSize { width, height }) = atlas.pages.get(page as usize) else {
         return PageSamples::default();
     };
+    let size = PageSize { width: width * finer, height: height * finer };
     let patches = patches_of_page(scene, geometry, atlas, page, size);
     let bands = bands(&patches, size);
     let samples = bands.par_iter().enumerate().map(|(band, members)| sample_band(&patches, members, band as u32, size));

@@ -4,6 +4,7 @@ use super::Prepared;
 use crate::atlas::Atlas;
 use crate::disk::manifest::{self, ArcEntry, ErrorEntry, InstanceEntry, LampEntry, Manifest, PathEntry, Stats};
 use crate::disk::write::SCENE_FILE;
+use crate::glb::WrittenScene;
 use crate::lamp::{LampKey, LampPath};
 use crate::scene::{Alpha, Scene};
 use crate::settings::BakeSettings;
@@ -24,6 +25,7 @@ pub(super) fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSet
         },
         path: path.as_ref().map(path_entry),
         lamp: lamp.as_ref().map(lamp_entry),
+        ambient: None,
         bits: settings.bits.count(),
         atlases: Vec::new(),
         instances: Vec::new(),
@@ -73,7 +75,7 @@ fn arc_entry(arc: &sun::SunArc) -> ArcEntry {
     }
 }
 
-pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &[(usize, usize)]) -> Vec<InstanceEntry> {
+pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenScene) -> Vec<InstanceEntry> {
     let entry = |(index, &(node, primitive)): (usize, &(usize, usize))| {
         let placement = &atlas.placements[index];
         let material = scene.material(index);
@@ -82,12 +84,13 @@ pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &[(usize, 
             primitive,
             atlas: (material.alpha != Alpha::Air).then_some(placement.page),
             uv_set: 1,
-            uv_scale: placement.scale.to_array(),
-            uv_offset: placement.offset.to_array(),
+            // Coordinates that are the page's own already are not moved again.
+            uv_scale: if written.has_page_uvs { [1.0; 2] } else { placement.scale.to_array() },
+            uv_offset: if written.has_page_uvs { [0.0; 2] } else { placement.offset.to_array() },
             double_sided: material.is_double_sided,
         }
     };
-    written.iter().enumerate().map(entry).collect()
+    written.places.iter().enumerate().map(entry).collect()
 }
 
 /// Most layers that may be asked for.

@@ -1,24 +1,27 @@
 //! A bake from end to end: the flow of the crate, one stage after the other.
 
+mod ambient;
 mod entries;
 mod layout;
 mod leave_out;
 mod light;
 mod pages;
 
+use crate::ambient::AmbientEngine;
 use crate::atlas::AtlasError;
 use crate::disk::manifest::{LampEntry, Manifest, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
-use crate::glb::{self, GlbTooLarge};
+use crate::glb::{self, GlbTooLarge, Occlusion};
 use crate::lamp::{self, LampError, LampPath};
 use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan};
 use crate::progress::{Progress, Stage};
-use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
-use crate::settings::{BakeSettings, EngineChoice, SunRequest};
+use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene, ShadingNormals};
+use crate::settings::{AmbientRequest, BakeSettings, EngineChoice, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::Engine;
+use ambient::Sky;
 use entries::{instance_entries, loss_warnings, manifest_of};
 use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
 use leave_out::{darkness_warning, leave_out};
@@ -146,9 +149,9 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     let mut warnings = scene.warnings.clone();
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
     let path = if is_lamp_alone { None } else { sun_path(settings, &scene, &mut warnings)? };
-    let lamp = lamp_path(settings, path.as_ref())?;
+    let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
     let no_sun = if is_lamp_alone { "a lamp is baked instead" } else { "the sun does not rise" };
-    let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings.lane_count, no_sun);
+    let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
     Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
 }
 
@@ -222,16 +225,22 @@ fn bake_prepared(
         Light { engine, lanes: &[Lane::CENTRE], duration_min, stage: Stage::Lamp }
     });
     let lights = Lights { sun, lamp };
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, progress, seconds);
+    let normals = ShadingNormals::new(scene);
+    let request = settings.ambient.as_ref();
+    let engine = |request: &AmbientRequest| AmbientEngine::new(scene, &geometry, &tracer, request.estimate);
+    let engine = timed(&mut seconds.bvh, || request.map(engine));
+    let sky = request.zip(engine.as_ref()).map(|(request, engine)| Sky { engine, request, normals: &normals });
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, sky, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
-    let written = glb::write_glb(scene, &atlas.layouts)?;
+    let occlusion = (!pages.occlusion.is_empty()).then(|| Occlusion { atlas, pages: &pages.occlusion });
+    let written = glb::write_glb(scene, &atlas.layouts, occlusion)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
     let manifest = finished(pages, prepared, &lights, settings);
     let manifest = Manifest {
         stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,
-        instances: instance_entries(scene, atlas, &written.places),
+        instances: instance_entries(scene, atlas, &written),
         ..manifest
     };
     check_cancelled(progress)?;
@@ -254,7 +263,7 @@ fn lamp_engine<'a>(
 
 /// The manifest with what baking its lights took and lost.
 fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &BakeSettings) -> Manifest {
-    let PageBaker { stats, sun, lamp, atlas, .. } = pages;
+    let PageBaker { stats, sun, lamp, atlas, sky_account, .. } = pages;
     let manifest = manifest_of(prepared, atlas, settings);
     let Account { work, intervals, dark_texels, most_intervals, loss } = sun;
     let lamp = manifest.lamp.zip(lights.lamp).map(|(entry, light)| {
@@ -263,6 +272,7 @@ fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &B
     });
     Manifest {
         lamp,
+        ambient: settings.ambient.as_ref().map(|request| ambient::entry(request, &sky_account)),
         stats: Stats {
             rays: work.rays,
             node_tests: work.nodes,

@@ -1,10 +1,13 @@
 //! The pages of a bake, one after the other, so that only one is in memory.
 
+use super::ambient::{Sky, SkyAccount};
 use super::light::{Account, LaneEncoders, Light};
 use super::{BakeError, check_cancelled, timed};
+use crate::ambient::AmbientPage;
 use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
 use crate::disk::write::SetWriter;
+use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{LaneMaps, PageMaps};
 use crate::progress::{Progress, Stage};
@@ -24,15 +27,19 @@ pub(super) struct Lights<'a> {
 
 /// Bakes pages, and keeps the account.
 pub(super) struct PageBaker<'a> {
-    scene: &'a Scene,
-    geometry: &'a Geometry,
+    pub(super) scene: &'a Scene,
+    pub(super) geometry: &'a Geometry,
     pub atlas: &'a Atlas,
-    settings: &'a BakeSettings,
+    pub(super) settings: &'a BakeSettings,
     lights: Lights<'a>,
-    progress: &'a dyn Progress,
+    pub(super) sky: Option<Sky<'a>>,
+    pub(super) progress: &'a dyn Progress,
     pub stats: Stats,
     pub sun: Account,
     pub lamp: Account,
+    pub sky_account: SkyAccount,
+    /// The viewers' occlusion textures of the pages so far, if ambient light is baked.
+    pub occlusion: Vec<OcclusionPage>,
     /// Of the page at hand, if it was asked for.
     loss_map: Option<LossMap>,
 }
@@ -44,6 +51,7 @@ impl<'a> PageBaker<'a> {
         atlas: &'a Atlas,
         settings: &'a BakeSettings,
         lights: Lights<'a>,
+        sky: Option<Sky<'a>>,
         progress: &'a dyn Progress,
         seconds: StageSeconds,
     ) -> Self {
@@ -56,27 +64,50 @@ impl<'a> PageBaker<'a> {
             seconds,
             ..Stats::default()
         };
-        let (sun, lamp) = (Account::default(), Account::default());
-        Self { scene, geometry, atlas, settings, lights, progress, stats, sun, lamp, loss_map: None }
+        let (sun, lamp, sky_account) = (Account::default(), Account::default(), SkyAccount::default());
+        let occlusion = Vec::new();
+        Self {
+            scene,
+            geometry,
+            atlas,
+            settings,
+            lights,
+            sky,
+            progress,
+            stats,
+            sun,
+            lamp,
+            sky_account,
+            occlusion,
+            loss_map: None,
+        }
     }
 
     pub fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<AtlasEntry>, BakeError> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
         for index in 0..self.atlas.pages.len() {
-            let maps = self.bake(index)?;
+            let (maps, ambient) = self.bake(index)?;
             self.progress.start(Stage::Write, 0);
             let loss_map = self.loss_map.take();
             let write = || {
                 let entry = writer.write_page(index, &maps, self.settings.bits)?;
+                let entry = match (&self.settings.ambient, &ambient, &maps.ambient) {
+                    (Some(request), Some(page), Some(maps)) => {
+                        writer.write_ambient(index, page, maps, request, entry)?
+                    }
+                    _ => entry,
+                };
                 let loss_map = loss_map.map(|map| writer.write_loss_map(index, &map)).transpose()?;
                 Ok::<_, BakeError>(AtlasEntry { loss_map, ..entry })
             };
             entries.push(timed(&mut self.stats.seconds.write, write)?);
+            self.occlusion
+                .extend(maps.ambient.as_ref().map(|ambient| OcclusionPage::new(self.atlas.pages[index], ambient)));
         }
         Ok(entries)
     }
 
-    fn bake(&mut self, index: usize) -> Result<PageMaps, BakeError> {
+    fn bake(&mut self, index: usize) -> Result<(PageMaps, Option<AmbientPage>), BakeError> {
         let size = self.atlas.pages[index];
         let started = Instant::now();
         let samples = atlas::sample_page(self.scene, self.geometry, self.atlas, index as u32);
@@ -94,7 +125,10 @@ impl<'a> PageBaker<'a> {
         self.lamp = account;
         check_cancelled(self.progress)?;
         let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
-        Ok(PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ao: None })
+        let page = self.bake_ambient(index, &samples, &order)?;
+        let ambient = page.as_ref().map(AmbientPage::encoded);
+        let lanes = lanes.unwrap_or_default();
+        Ok((PageMaps { width: size.width, height: size.height, lanes, lamp, ambient }, page))
     }
 
     /// Finds and encodes when the texels of a page see a light.

@@ -3,7 +3,7 @@
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::maps::Bits;
-use sunbake::settings::EngineChoice;
+use sunbake::settings::{EngineChoice, VertexAttribute};
 use sunbake::sun::Date;
 
 /// Bakes when every texel of a glTF scene sees the sun.
@@ -19,8 +19,9 @@ pub enum Command {
     /// Bake a glTF scene into a set of maps.
     ///
     /// Writes a folder: sunbake.json (what is in it), scene.glb (the scene with the bake's texture coordinates as
-    /// TEXCOORD_1) and pairs of PNGs with the times at which every texel begins and ceases to see the sun. It is written
-    /// beside its target and moved into place when it is whole.
+    /// TEXCOORD_1 and its ambient occlusion, for any viewer), PNGs with ambient occlusion, and pairs of PNGs with the times at
+    /// which every texel begins and ceases to see the sun. It is written beside its target and moved into place when it is
+    /// whole.
     ///
     /// Exit codes: 0 done, 1 usage, 2 reading or writing failed, 3 the input is bad, 4 a defect of sunbake, 5 not
     /// supported by this machine, 130 or 143 stopped by a signal.
@@ -31,17 +32,17 @@ pub enum Command {
     ///
     /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the sun
     /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
-    /// where there are several), lamp (when it sees the lamp, where the set has one) and ao. With these, any ray tracer can check a bake.
+    /// where there are several), lamp (when it sees the lamp, where the set has one), ao, ao_back, bent and sky. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// A look in seconds: a page of 512, 8 bits.
+    /// A look in seconds: a page of 512, 8 bits, 64 rays of sky.
     Draft,
-    /// For a game level: a page of 2048, 16 bits.
+    /// For a game level: a page of 2048, 16 bits, 256 rays of sky.
     Standard,
-    /// To keep: a page of 4096, 16 bits, up to 8 layers.
+    /// To keep: a page of 4096, 16 bits, up to 8 layers, 1024 rays of sky.
     Final,
 }
 
@@ -50,6 +51,8 @@ pub enum Preset {
 pub enum Only {
     /// When texels see the sun.
     Intervals,
+    /// How much of the sky texels see.
+    Ao,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -74,7 +77,9 @@ pub struct BakeArgs {
     pub sun: SunArgs,
     #[command(flatten)]
     pub cost: CostArgs,
-    /// What to bake, of: intervals (when the sun is seen). This version bakes nothing else.
+    #[command(flatten)]
+    pub ambient: AmbientArgs,
+    /// What to bake, of: intervals (when the sun is seen), ao (how much of the sky). [default: both]
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = parse_only)]
     pub only: Vec<Only>,
     /// Show where --layers and --bits lost minutes: a picture and the numbers for each page.
@@ -180,6 +185,58 @@ pub struct CostArgs {
     pub max_memory: Option<u64>,
 }
 
+#[derive(Debug, Clone, ClapArgs)]
+#[command(next_help_heading = "Ambient light")]
+pub struct AmbientArgs {
+    /// Rays of sky a texel, a power of two from 4 to 65536. [default: 64, 256 or 1024, by preset]
+    ///
+    /// Time grows with the number. The error of ambient occlusion is about 0.02 with 64 rays, 0.008 with 256, 0.003 with 1024.
+    #[arg(long, value_name = "N", value_parser = parse_rays)]
+    pub ao_rays: Option<u32>,
+    /// Only surfaces nearer than M metres hide the sky. [default: all do]
+    ///
+    /// A surface at d hides (1 - (d/M)^2)^2 of the light: all of it at contact, nothing at M. For interiors, whose closed
+    /// rooms are black otherwise; a metre or two shows corners.
+    #[arg(long, value_name = "M", value_parser = parse_metres)]
+    pub ao_distance: Option<f64>,
+    /// Stop a texel's rays once its error is below E with 95 % confidence, 0.001 to 0.5. [default: all have as many]
+    ///
+    /// --ao-rays is then the most, 4096 unless given. What is open or closed all around takes 64.
+    #[arg(long, value_name = "E", value_parser = parse_error)]
+    pub ao_error: Option<f64>,
+    /// Spread a texel's rays over N by N points of its surface, 1 to 8.
+    ///
+    /// Takes no more rays. Softens what is smaller than a texel.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub ao_supersample: u32,
+    /// Bits of the occlusion textures. [default: 8 in draft, else 16]
+    #[arg(long, value_name = "8|16", value_parser = parse_bits)]
+    pub ao_bits: Option<Bits>,
+    /// Bake bent normals as well: from where each texel sees the sky.
+    #[arg(long)]
+    pub bent: bool,
+    /// Bake how any sky adds up at each texel: sh2, nine coefficients of spherical harmonics.
+    ///
+    /// A sky whose brightness changes through the day then lights the scene rightly. Takes 54 bytes a texel.
+    #[arg(long, value_name = "BASIS")]
+    pub sky: Option<SkyBasis>,
+    /// Also write vertices.glb, with ambient occlusion at its vertices as COLOR_0 or _AO.
+    ///
+    /// For engines without a second set of texture coordinates. COLOR_0 is shown by every viewer; _AO is a number of its own.
+    #[arg(long, value_name = "ATTRIBUTE", value_parser = parse_attribute)]
+    pub ao_vertices: Option<VertexAttribute>,
+    /// Also write ambient light as OpenEXR of 32-bit numbers.
+    #[arg(long)]
+    pub exr: bool,
+}
+
+/// How sky visibility is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SkyBasis {
+    /// Spherical harmonics up to degree two.
+    Sh2,
+}
+
 #[derive(Debug, Clone, Copy, ClapArgs)]
 #[command(next_help_heading = "Output")]
 pub struct OutputArgs {
@@ -225,8 +282,36 @@ fn parse_place(text: &str) -> Result<[f64; 2], String> {
 fn parse_only(text: &str) -> Result<Only, String> {
     match text {
         "intervals" => Ok(Only::Intervals),
-        "ao" => Err("ambient occlusion is not supported yet: give `--only intervals`, or leave --only out".into()),
-        _ => Err(format!("`{text}` is nothing to bake: give `intervals`")),
+        "ao" => Ok(Only::Ao),
+        _ => Err(format!("`{text}` is nothing to bake: give `intervals` or `ao`")),
+    }
+}
+
+fn parse_rays(text: &str) -> Result<u32, String> {
+    let count: Option<u32> = text.parse().ok().filter(|n| (4..=65_536).contains(n));
+    let count = count.ok_or_else(|| format!("`{text}` is not a number of rays from 4 to 65536"))?;
+    if count.is_power_of_two() {
+        return Ok(count);
+    }
+    let above = count.next_power_of_two();
+    Err(format!("{count} is no power of two, at which rays are spread evenly: give {} or {above}", above / 2))
+}
+
+fn parse_metres(text: &str) -> Result<f64, String> {
+    let valid = |x: &f64| x.is_finite() && *x > 0.0;
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a positive number of metres"))
+}
+
+fn parse_error(text: &str) -> Result<f64, String> {
+    let valid = |x: &f64| (0.001..=0.5).contains(x);
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not an error from 0.001 to 0.5"))
+}
+
+fn parse_attribute(text: &str) -> Result<VertexAttribute, String> {
+    match text {
+        "COLOR_0" => Ok(VertexAttribute::Color),
+        "_AO" => Ok(VertexAttribute::Ao),
+        _ => Err(format!("`{text}` is no attribute for ambient occlusion: give COLOR_0 or _AO")),
     }
 }
 
@@ -307,6 +392,15 @@ mod tests {
         assert_eq!(["1", "3", "5"].map(parse_lanes), [Ok(1), Ok(3), Ok(5)]);
         for bad in ["", "0", "2", "7", "-3", "three"] {
             assert!(parse_lanes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn rays_are_powers_of_two_and_the_nearest_are_named() {
+        assert_eq!(["4", "256", "65536"].map(parse_rays), [Ok(4), Ok(256), Ok(65_536)]);
+        assert!(parse_rays("100").is_err_and(|text| text.contains("64 or 128")));
+        for bad in ["", "0", "2", "3", "65537", "131072", "-4", "many"] {
+            assert!(parse_rays(bad).is_err(), "{bad}");
         }
     }
 

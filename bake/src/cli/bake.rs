@@ -1,6 +1,6 @@
 //! `sunbake bake`.
 
-use super::args::{BakeArgs, OutputArgs, Preset};
+use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, Preset};
 use super::exit::Failure;
 use super::out::{print, print_json, warn};
 use super::summary;
@@ -8,7 +8,7 @@ use super::terminal::TerminalProgress;
 use std::path::Path;
 use sunbake::BakeReport;
 use sunbake::atlas::Density;
-use sunbake::settings::{BakeSettings, SunRequest};
+use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 use sunbake::sun::{Date, DayRequest};
 
 /// Where the sun stands if nothing says.
@@ -97,6 +97,8 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
+        bakes_intervals: args.only.is_empty() || args.only.contains(&Only::Intervals),
+        ambient: ambient(args, preset.ambient)?,
         loss_map: args.loss_map,
         engine,
         edge_seconds: cost.edge_seconds.unwrap_or(preset.edge_seconds),
@@ -104,6 +106,50 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         max_memory_bytes: cost.max_memory.unwrap_or(preset.max_memory_bytes),
         ..preset
     })
+}
+
+/// Most rays of a texel that has an error to keep, unless told otherwise.
+const MOST_RAYS: u32 = 4096;
+
+fn ambient(args: &BakeArgs, preset: Option<AmbientRequest>) -> Result<Option<AmbientRequest>, Failure> {
+    let given = &args.ambient;
+    let is_wanted = args.only.is_empty() || args.only.contains(&Only::Ao);
+    let Some(mut request) = preset.filter(|_| is_wanted) else {
+        return match flag_given(given) {
+            Some(flag) => {
+                Err(Failure::usage(format!("{flag} asks for ambient light and --only for none: add ao to --only")))
+            }
+            None => Ok(None),
+        };
+    };
+    let estimate = &mut request.estimate;
+    let usual = if given.ao_error.is_some() { MOST_RAYS } else { estimate.rays };
+    estimate.rays = given.ao_rays.unwrap_or(usual);
+    estimate.distance_m = given.ao_distance;
+    estimate.error = given.ao_error;
+    estimate.wants_bent = given.bent;
+    estimate.wants_sky = given.sky.is_some();
+    request.supersample = given.ao_supersample;
+    request.bits = given.ao_bits.unwrap_or(request.bits);
+    request.vertices = given.ao_vertices;
+    request.exr = given.exr;
+    Ok(Some(request))
+}
+
+/// A flag about ambient light, if one is given.
+fn flag_given(given: &AmbientArgs) -> Option<&'static str> {
+    let flags = [
+        ("--ao-rays", given.ao_rays.is_some()),
+        ("--ao-distance", given.ao_distance.is_some()),
+        ("--ao-error", given.ao_error.is_some()),
+        ("--ao-supersample", given.ao_supersample > 1),
+        ("--ao-bits", given.ao_bits.is_some()),
+        ("--bent", given.bent),
+        ("--sky", given.sky.is_some()),
+        ("--ao-vertices", given.ao_vertices.is_some()),
+        ("--exr", given.exr),
+    ];
+    flags.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
 }
 
 /// The text of a path file that a flag names.

@@ -5,7 +5,8 @@ use std::fmt::Write;
 use sunbake::Prepared;
 use sunbake::atlas::Density;
 use sunbake::disk::manifest::{
-    AtlasEntry, EffectEntry, ErrorEntry, LampEntry, LampKeyEntry, LossEntry, Manifest, PathEntry, StageSeconds,
+    AmbientEntry, AtlasEntry, EffectEntry, ErrorEntry, LampEntry, LampKeyEntry, LossEntry, Manifest, PathEntry,
+    SeamEntry, StageSeconds,
 };
 use sunbake::settings::BakeSettings;
 
@@ -33,7 +34,7 @@ pub fn of(manifest: &Manifest) -> String {
     }
     lines.line("scene", scene(manifest));
     lines.line("atlas", atlas(manifest));
-    if manifest.path.is_some() {
+    if has_times(manifest) {
         lines.line("times", times(manifest));
         lines.line("rounding", loss(&manifest.error.quantisation_min));
         lines.line("merging", merging(&manifest.error));
@@ -43,6 +44,10 @@ pub fn of(manifest: &Manifest) -> String {
         lines.line("lamp times", lamp_times(manifest, entry));
         lines.line("  rounding", loss(&entry.error.quantisation_min));
         lines.line("  merging", merging(&entry.error));
+    }
+    if let Some(entry) = &manifest.ambient {
+        lines.line("sky", sky(entry, manifest.stats.seconds.ambient));
+        lines.line("seams", seams(&entry.seams));
     }
     if let Some(text) = loss_maps(manifest) {
         lines.line("loss map", text);
@@ -72,6 +77,9 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
         Density::TexelsPerMetre(d) => format!("{d} texels/m, on pages of at most {edge} x {edge}"),
     };
     lines.line("atlas", pages);
+    if !settings.bakes_intervals {
+        return lines.0;
+    }
     let layers = count(settings.layer_cap as u64, "layer");
     let lanes = in_lanes(prepared.plan.lane_count(settings.lane_count));
     lines.line("times", format!("{} bits, at most {layers}{lanes}", settings.bits.count()));
@@ -137,6 +145,29 @@ fn lamp_times(manifest: &Manifest, entry: &LampEntry) -> String {
     let mean = stats.intervals as f64 / (manifest.stats.texels as f64).max(1.0);
     let layers = count(layers as u64, "layer");
     format!("{layers}; {mean:.2} intervals a texel, {} at most; found by {}", stats.most_intervals, stats.engine)
+}
+
+/// Whether times at which the sun is seen are stored.
+fn has_times(manifest: &Manifest) -> bool {
+    manifest.path.is_some() && manifest.atlases.iter().any(|atlas| !atlas.lanes.is_empty())
+}
+
+fn sky(entry: &AmbientEntry, seconds: f64) -> String {
+    let millions = entry.rays_traced as f64 / 1e6;
+    let rays = match entry.error {
+        Some(error) => format!("to {error} by at most {} rays a texel", entry.rays),
+        None => format!("{} rays a texel", entry.rays),
+    };
+    let within = entry.distance_m.map_or(String::new(), |m| format!(", within {m} m"));
+    let speed = millions / seconds.max(1e-9);
+    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried", entry.buried_texels)
+}
+
+fn seams(entry: &SeamEntry) -> String {
+    match entry.points {
+        0 => "no surface is cut".into(),
+        _ => format!("{:.4} apart on average, 99 % under {:.4}, worst {:.4}", entry.mean, entry.p99, entry.worst),
+    }
 }
 
 fn merging(error: &ErrorEntry) -> String {

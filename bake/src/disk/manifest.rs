@@ -28,6 +28,9 @@ pub struct Manifest {
     /// The path of a lamp that moves through the scene, where one was baked. Its t is the sun's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampEntry>,
+    /// How ambient light was baked, where it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ambient: Option<AmbientEntry>,
     /// 8 or 16: bits of each stored time.
     pub bits: u32,
     /// Pages of the atlas.
@@ -153,7 +156,7 @@ pub struct LampStats {
 }
 
 /// A page of the atlas.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct AtlasEntry {
     /// In texels.
     pub width: u32,
@@ -164,13 +167,83 @@ pub struct AtlasEntry {
     /// When texels see the lamp, in every page of a set that has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampMapsEntry>,
-    /// Ambient occlusion, 0 is occluded.
+    /// Ambient occlusion, 0 is occluded: a grey PNG or, where some texel has two sides, an RGB one whose green is what the
+    /// front sees, blue what the back sees, and red, which viewers read, the mean of the two.
     pub ao: Option<String>,
-    /// Bent normals.
+    /// Bent normals of fronts: RGB PNG of 16 bits, a code q meaning `(q - 32768) / 32767`, world space. The length is the
+    /// mean's own.
     pub bent: Option<String>,
+    /// Bent normals of backs, where some texel has two sides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bent_back: Option<String>,
+    /// Sky visibility in spherical harmonics.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sky: Option<SkyMapsEntry>,
+    /// All of these as numbers, OpenEXR of `f32`, if asked for. Nothing else needs it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ambient_exr: Option<String>,
     /// Where storing this page lost minutes, if the bake was asked to show it. Nothing else needs these files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loss_map: Option<LossMapEntry>,
+}
+
+/// Sky visibility: with sky radiance `L = sum of L_i Y_i`, a matt surface sends back `albedo * sum of L_i T_i`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SkyMapsEntry {
+    /// `sh2`: real spherical harmonics up to degree two, in the order (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2, 2),
+    /// orthonormal, of directions in world space: Y(1, -1) goes with y, Y(1, 0) with z, Y(1, 1) with x.
+    pub basis: String,
+    /// Coefficients T of fronts, three a file: RGB PNGs of 16 bits, a code q meaning `(q - 32768) / 32767`.
+    pub front: [String; 3],
+    /// Those of backs, where some texel has two sides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back: Option<[String; 3]>,
+}
+
+/// What ambient light was baked with, and what came of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AmbientEntry {
+    /// Rays a texel and side; with an error, the most of them.
+    pub rays: u32,
+    /// The error that texels were estimated to, with 95 % confidence; null: all have as many rays.
+    pub error: Option<f64>,
+    /// Metres beyond which nothing hides; a surface at d hides `(1 - (d / distance_m)^2)^2`. Null: everything hides.
+    pub distance_m: Option<f64>,
+    /// Points of a texel along each of its edges.
+    pub supersample: u32,
+    /// 8 or 16: bits of the occlusion textures.
+    pub bits: u32,
+    /// Rays traced in all.
+    pub rays_traced: u64,
+    /// Texels inside a solid. Those beside one that can be seen hold its value, the others 0.
+    pub buried_texels: u64,
+    /// How far apart the two sides of cuts are.
+    pub seams: SeamEntry,
+    /// The scene with openness at its vertices, if asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vertices: Option<VertexEntry>,
+}
+
+/// How far apart filtered occlusion is on the two sides of cuts between charts of one surface, at points half a texel apart.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct SeamEntry {
+    /// Points looked at.
+    pub points: u64,
+    /// Over all of them.
+    pub mean: f64,
+    /// 99 in 100 are no farther apart; of several pages, the largest.
+    pub p99: f64,
+    /// The worst.
+    pub worst: f64,
+}
+
+/// A scene with openness at its vertices. Nothing else needs it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VertexEntry {
+    /// File name.
+    pub file: String,
+    /// `COLOR_0` or `_AO`.
+    pub attribute: String,
 }
 
 /// Minutes that storing lost, texel by texel.
@@ -223,7 +296,8 @@ pub struct InstanceEntry {
     pub primitive: usize,
     /// Index in `atlases`; null for surfaces that are not baked (wholly transparent ones).
     pub atlas: Option<u32>,
-    /// Which `TEXCOORD_n` of `scene.glb` holds `uv`.
+    /// Which `TEXCOORD_n` of `scene.glb` holds `uv`. In a set with ambient occlusion these are page coordinates already, so
+    /// that any viewer shows it: the scale is 1 and the offset 0.
     pub uv_set: u32,
     /// In page coordinates, v from the top.
     pub uv_scale: [f32; 2],

@@ -3,4 +3,7 @@
 pub mod manifest;
 pub mod read;
 pub mod write;
+mod write_ambient;
 mod write_loss;
+
+pub(crate) use write_ambient::{in_8_bits, mean};

@@ -4,7 +4,7 @@ use super::manifest::{
     ArcEntry, AtlasEntry, FORMAT, InstanceEntry, LampEntry, LampKeyEntry, LayerEntry, Manifest, PathEntry, VERSION,
 };
 use crate::lamp::{LampError, LampKey, LampPath};
-use crate::maps::{Bits, Lane, LaneMaps, LayerMaps, PageMaps};
+use crate::maps::{AmbientMaps, AmbientSide, Bits, Lane, LaneMaps, LayerMaps, PageMaps};
 use crate::sun::{Day, PathError, SunArc, SunPath};
 use glam::DVec3;
 use std::path::{Component, Path, PathBuf};
@@ -112,7 +112,8 @@ pub fn read_manifest(folder: &Path) -> Result<Manifest, ReadError> {
 fn check_names(manifest: &Manifest) -> Result<(), String> {
     let mut names = vec![&manifest.scene.file];
     for atlas in &manifest.atlases {
-        names.extend(atlas.ao.iter().chain(&atlas.bent));
+        names.extend(atlas.ao.iter().chain(&atlas.bent).chain(&atlas.bent_back).chain(&atlas.ambient_exr));
+        names.extend(atlas.sky.iter().flat_map(|sky| sky.front.iter().chain(sky.back.iter().flatten())));
         names.extend(atlas.loss_map.iter().flat_map(|map| [&map.picture, &map.numbers]));
         let layers = atlas.lanes.iter().flat_map(|lane| &lane.layers);
         let of_lamp = atlas.lamp.iter().flat_map(|lamp| &lamp.layers);
@@ -162,8 +163,28 @@ fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, 
         lanes.push(LaneMaps { lane: Lane { offset_rad: lane.offset_deg.to_radians(), weight: lane.weight }, layers });
     }
     let lamp = atlas.lamp.as_ref().map(|lamp| read_layers(folder, &lamp.layers, size, bits)).transpose()?;
-    let ao = atlas.ao.as_ref().map(|name| read_grey(&folder.join(name), size)).transpose()?;
-    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ao })
+    let ambient = read_ambient(folder, atlas, size)?;
+    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ambient })
+}
+
+fn read_ambient(folder: &Path, atlas: &AtlasEntry, size: (u32, u32)) -> Result<Option<AmbientMaps>, ReadError> {
+    let Some(ao) = &atlas.ao else { return Ok(None) };
+    let [front, back] = read_occlusion(&folder.join(ao), size)?;
+    let bent = |name: &Option<String>| name.as_ref().map(|n| read_rgb16(&folder.join(n), size)).transpose();
+    let sky = |names: Option<&[String; 3]>| names.map(|names| read_sky(folder, names, size)).transpose();
+    let of_front = atlas.sky.as_ref().map(|sky| &sky.front);
+    let of_back = atlas.sky.as_ref().and_then(|sky| sky.back.as_ref());
+    let front = AmbientSide { open: front.unwrap_or_default(), bent: bent(&atlas.bent)?, sky: sky(of_front)? };
+    let back = match back {
+        None => None,
+        Some(open) => Some(AmbientSide { open, bent: bent(&atlas.bent_back)?, sky: sky(of_back)? }),
+    };
+    let lacks = |is_there: fn(&AmbientSide) -> bool| back.as_ref().is_some_and(|b| is_there(b) != is_there(&front));
+    if lacks(|side| side.bent.is_some()) || lacks(|side| side.sky.is_some()) {
+        let reason = "it has bent normals or a sky of one side of its surfaces and not of the other".into();
+        return Err(ReadError::Manifest { path: folder.join(MANIFEST_FILE), reason });
+    }
+    Ok(Some(AmbientMaps { front, back }))
 }
 
 fn read_layers(
@@ -208,8 +229,34 @@ fn read_codes(path: &Path, size: (u32, u32), bits: Bits) -> Result<Vec<[u16; 4]>
     }
 }
 
-fn read_grey(path: &Path, size: (u32, u32)) -> Result<Vec<u16>, ReadError> {
-    Ok(decode(path, size)?.into_luma16().into_raw())
+/// What fronts see and, of a picture with colours, what backs see.
+fn read_occlusion(path: &Path, size: (u32, u32)) -> Result<[Option<Vec<u16>>; 2], ReadError> {
+    let image = decode(path, size)?;
+    if !image.color().has_color() {
+        return Ok([Some(image.into_luma16().into_raw()), None]);
+    }
+    let texels = image.into_rgb16();
+    Ok([1, 2].map(|channel| Some(texels.pixels().map(|texel| texel.0[channel]).collect())))
+}
+
+fn read_rgb16(path: &Path, size: (u32, u32)) -> Result<Vec<[u16; 3]>, ReadError> {
+    match decode(path, size)? {
+        image::DynamicImage::ImageRgb16(image) => Ok(image.pixels().map(|texel| texel.0).collect()),
+        image => {
+            let reason = format!("its texels are {:?}, not RGB of 16 bits", image.color());
+            Err(ReadError::Texture { path: path.to_owned(), reason })
+        }
+    }
+}
+
+fn read_sky(folder: &Path, names: &[String; 3], size: (u32, u32)) -> Result<Vec<[u16; 9]>, ReadError> {
+    let mut sky = vec![[0; 9]; size.0 as usize * size.1 as usize];
+    for (k, name) in names.iter().enumerate() {
+        for (codes, three) in sky.iter_mut().zip(read_rgb16(&folder.join(name), size)?) {
+            codes[3 * k..3 * k + 3].copy_from_slice(&three);
+        }
+    }
+    Ok(sky)
 }
 
 /// The path that a manifest describes.

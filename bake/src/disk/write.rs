@@ -161,7 +161,7 @@ impl SetWriter {
         let written: Result<Vec<u64>, WriteError> =
             textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits)).collect();
         self.bytes += written?.iter().sum::<u64>();
-        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, lamp, ao: None, bent: None, loss_map: None })
+        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, lamp, ..AtlasEntry::default() })
     }
 
     /// Bytes written so far.
@@ -287,7 +287,7 @@ mod tests {
         let mut of_lamp = layer.clone();
         of_lamp.rise[2] = [7; 4];
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![layer.clone(), layer] }];
-        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ao: None }
+        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None }
     }
 
     fn manifest(atlas: AtlasEntry, bits: Bits) -> Manifest {
@@ -299,6 +299,7 @@ mod tests {
             scene: manifest::SceneEntry { file: SCENE_FILE.into(), centre_m: [0.0; 3], texels_per_metre: 1.0 },
             path: None,
             lamp: Some(lamp()),
+            ambient: None,
             bits: bits.count(),
             atlases: vec![atlas],
             instances: Vec::new(),

@@ -33,7 +33,7 @@ fn image(image: &Image, binary: &mut Binary) -> Value {
 }
 
 /// The index of an equal entry, which is added if there is none.
-fn index_of(list: &mut Vec<Value>, value: Value) -> usize {
+pub(super) fn index_of(list: &mut Vec<Value>, value: Value) -> usize {
     list.iter().position(|known| *known == value).unwrap_or_else(|| {
         list.push(value);
         list.len() - 1

@@ -1,5 +1,6 @@
 //! Meshes: the primitives that a node draws, as one glTF mesh, shared by all nodes that draw the same.
 
+use super::Occlusion;
 use super::binary::Binary;
 use crate::{
     atlas::Layout,
@@ -11,25 +12,41 @@ use std::collections::BTreeMap;
 
 /// Which of the scene's meshes form the primitives of which glTF mesh.
 pub(super) struct Groups {
-    /// For each glTF mesh, its primitives as indices in [`Scene::meshes`].
-    pub meshes: Vec<Vec<usize>>,
+    /// For each glTF mesh, its primitives.
+    pub meshes: Vec<Vec<Primitive>>,
     /// For each node, its glTF mesh.
     pub mesh_of_node: Vec<Option<usize>>,
     /// For each instance, its node and primitive.
     pub places: Vec<(usize, usize)>,
 }
 
+/// A primitive: one of [`Scene::meshes`] and, where it is not the same for all of its instances, which of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Primitive {
+    mesh: usize,
+    instance: Option<usize>,
+}
+
+/// What instances show beside their mesh.
+pub(super) enum Looks<'a> {
+    /// Nothing: their coordinates are the layout's, their material the mesh's.
+    AsTheyAre,
+    /// Occlusion, on page coordinates, with the material of every instance.
+    Occluded(Occlusion<'a>, Vec<usize>),
+}
+
 impl Groups {
-    pub fn new(scene: &Scene) -> Self {
+    /// `by_instance`: no primitive is shared between instances.
+    pub fn new(scene: &Scene, by_instance: bool) -> Self {
         let mut drawn = vec![Vec::new(); scene.nodes.len()];
         let mut places = Vec::with_capacity(scene.instances.len());
-        for instance in &scene.instances {
+        for (index, instance) in scene.instances.iter().enumerate() {
             places.push((instance.node, drawn[instance.node].len()));
-            drawn[instance.node].push(instance.mesh);
+            drawn[instance.node].push(Primitive { mesh: instance.mesh, instance: by_instance.then_some(index) });
         }
         let mut meshes = Vec::new();
         let mut known = BTreeMap::new();
-        let mut group = |primitives: Vec<usize>| {
+        let mut group = |primitives: Vec<Primitive>| {
             let next = meshes.len();
             *known.entry(primitives).or_insert_with_key(|primitives| {
                 meshes.push(primitives.clone());
@@ -41,15 +58,30 @@ impl Groups {
     }
 }
 
-pub(super) fn write(scene: &Scene, layouts: &[Layout], groups: &Groups, binary: &mut Binary) -> Vec<Value> {
-    let mut primitives: Vec<Option<Value>> = vec![None; scene.meshes.len()];
-    let mut write_group = |group: &Vec<usize>| {
+pub(super) fn write(
+    scene: &Scene,
+    layouts: &[Layout],
+    groups: &Groups,
+    looks: &Looks,
+    binary: &mut Binary,
+) -> Vec<Value> {
+    let mut shared: Vec<Option<Shared>> = scene.meshes.iter().map(|_| None).collect();
+    let mut write_group = |group: &Vec<Primitive>| {
         let mut written = Map::new();
-        if let Some(name) = group.first().and_then(|&mesh| scene.meshes[mesh].name.as_ref()) {
+        if let Some(name) = group.first().and_then(|first| scene.meshes[first.mesh].name.as_ref()) {
             written.insert("name".into(), json!(name));
         }
-        let mut one = |&mesh: &usize| {
-            primitives[mesh].get_or_insert_with(|| primitive(scene, mesh, &layouts[mesh], binary)).clone()
+        let mut one = |&Primitive { mesh, instance }: &Primitive| {
+            let layout = &layouts[mesh];
+            let shared = shared[mesh].get_or_insert_with(|| Shared::new(scene, mesh, layout, binary));
+            let (uvs, material) = match (looks, instance) {
+                (Looks::Occluded(occlusion, materials), Some(instance)) => {
+                    (&occlusion.page_uvs(scene, instance), materials[instance])
+                }
+                _ => (&layout.uvs, scene.meshes[mesh].material),
+            };
+            let baked = binary.add_vectors(uvs.iter().map(Vec2::to_array));
+            shared.primitive(baked, material)
         };
         written.insert("primitives".into(), group.iter().map(&mut one).collect());
         Value::from(written)
@@ -57,28 +89,45 @@ pub(super) fn write(scene: &Scene, layouts: &[Layout], groups: &Groups, binary: 
     groups.meshes.iter().map(&mut write_group).collect()
 }
 
-fn primitive(scene: &Scene, index: usize, layout: &Layout, binary: &mut Binary) -> Value {
-    let mesh = &scene.meshes[index];
-    let source = || layout.vertices.iter().map(|&vertex| vertex as usize);
-    let mut attributes = Map::new();
-    let mut add = |name: &str, accessor: usize| attributes.insert(name.into(), json!(accessor));
-    add("POSITION", binary.add_positions(source().map(|v| mesh.positions[v].to_array())));
-    if let Some(normals) = &mesh.normals {
-        add("NORMAL", binary.add_vectors(source().map(|v| normals[v].to_array())));
+/// What all instances of a mesh share.
+struct Shared {
+    attributes: Map<String, Value>,
+    indices: usize,
+}
+
+impl Shared {
+    fn new(scene: &Scene, index: usize, layout: &Layout, binary: &mut Binary) -> Self {
+        let mesh = &scene.meshes[index];
+        let source = || layout.vertices.iter().map(|&vertex| vertex as usize);
+        let mut attributes = Map::new();
+        let mut add = |name: &str, accessor: usize| attributes.insert(name.into(), json!(accessor));
+        add("POSITION", binary.add_positions(source().map(|v| mesh.positions[v].to_array())));
+        if let Some(normals) = &mesh.normals {
+            add("NORMAL", binary.add_vectors(source().map(|v| normals[v].to_array())));
+        }
+        match picture_texcoords(scene, mesh) {
+            Picture::Set(texcoords) => {
+                add("TEXCOORD_0", binary.add_vectors(source().map(|v| texcoords[v].to_array())));
+            }
+            Picture::Origin => {
+                add("TEXCOORD_0", binary.add_vectors(source().map(|_| [0.0; 2])));
+            }
+            Picture::None => {}
+        }
+        if let Some(colors) = &mesh.colors {
+            add("COLOR_0", binary.add_vectors(source().map(|v| colors[v].to_array())));
+        }
+        Self { attributes, indices: binary.add_indices(&layout.indices) }
     }
-    let baked = binary.add_vectors(layout.uvs.iter().map(Vec2::to_array));
-    let pictured = match picture_texcoords(scene, mesh) {
-        Picture::Set(texcoords) => binary.add_vectors(source().map(|v| texcoords[v].to_array())),
-        Picture::Origin => binary.add_vectors(source().map(|_| [0.0; 2])),
-        Picture::None => baked,
-    };
-    add("TEXCOORD_0", pictured);
-    add("TEXCOORD_1", baked);
-    if let Some(colors) = &mesh.colors {
-        add("COLOR_0", binary.add_vectors(source().map(|v| colors[v].to_array())));
+
+    /// A primitive with baked coordinates. They stand in for the picture's where it has none, because set 1 must not be
+    /// without set 0.
+    fn primitive(&self, baked: usize, material: usize) -> Value {
+        let mut attributes = self.attributes.clone();
+        attributes.entry("TEXCOORD_0").or_insert_with(|| json!(baked));
+        attributes.insert("TEXCOORD_1".into(), json!(baked));
+        json!({ "attributes": attributes, "indices": self.indices, "material": material })
     }
-    let indices = binary.add_indices(&layout.indices);
-    json!({ "attributes": attributes, "indices": indices, "material": mesh.material })
 }
 
 /// What `TEXCOORD_0` holds.
@@ -87,7 +136,7 @@ enum Picture<'a> {
     Set(&'a [Vec2]),
     /// The base colour has a texture and the mesh has no coordinates for it: all of it shows one texel.
     Origin,
-    /// Nothing wants it: the baked set stands in, because set 1 must not be without set 0.
+    /// Nothing wants it.
     None,
 }
 

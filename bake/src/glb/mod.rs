@@ -13,9 +13,13 @@ mod binary;
 mod materials;
 mod meshes;
 mod nodes;
+mod occlusion;
+
+pub use occlusion::{Occlusion, OcclusionPage};
 
 use crate::{atlas::Layout, scene::Scene};
 use binary::Binary;
+use meshes::Looks;
 use serde_json::{Map, Value, json};
 
 /// A scene in GLB's form, and where its instances stand in it.
@@ -25,6 +29,8 @@ pub struct WrittenScene {
     pub bytes: Vec<u8>,
     /// For each of [`Scene::instances`], its node and the index of its primitive in that node's mesh.
     pub places: Vec<(usize, usize)>,
+    /// Whether `TEXCOORD_1` holds page coordinates, not those of layouts.
+    pub has_page_uvs: bool,
 }
 
 /// The scene is larger than GLB's 32-bit lengths can say.
@@ -35,16 +41,20 @@ pub struct GlbTooLarge {
     pub bytes: u64,
 }
 
-/// Writes a scene with its layouts, one per [`Scene::meshes`].
+/// Writes a scene with its layouts, one per [`Scene::meshes`], and with occlusion textures, if it has any.
 ///
 /// # Errors
 ///
 /// Where the file would have 4 GiB or more.
-pub fn write_glb(scene: &Scene, layouts: &[Layout]) -> Result<WrittenScene, GlbTooLarge> {
+pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>) -> Result<WrittenScene, GlbTooLarge> {
     let mut binary = Binary::default();
-    let groups = meshes::Groups::new(scene);
-    let meshes = meshes::write(scene, layouts, &groups, &mut binary);
-    let materials = materials::write(scene, &mut binary);
+    let groups = meshes::Groups::new(scene, occlusion.is_some());
+    let mut materials = materials::write(scene, &mut binary);
+    let looks = match &occlusion {
+        None => Looks::AsTheyAre,
+        Some(occlusion) => Looks::Occluded(*occlusion, occlusion.add_to(scene, &mut materials, &mut binary)),
+    };
+    let meshes = meshes::write(scene, layouts, &groups, &looks, &mut binary);
     let mut root = Map::new();
     root.insert("asset".into(), json!({ "version": "2.0", "generator": GENERATOR }));
     root.insert("scene".into(), json!(0));
@@ -64,7 +74,7 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout]) -> Result<WrittenScene, GlbT
     ];
     root.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| (name.into(), list.into())));
     let bytes = container(&Value::from(root).to_string(), &binary.bytes)?;
-    Ok(WrittenScene { bytes, places: groups.places })
+    Ok(WrittenScene { bytes, places: groups.places, has_page_uvs: occlusion.is_some() })
 }
 
 const GENERATOR: &str = concat!("sunbake ", env!("CARGO_PKG_VERSION"));

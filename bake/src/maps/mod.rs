@@ -4,11 +4,13 @@
 //! code q of b bits means `t = q / (2^b - 1)`. An unused slot has rise = max and fall = 0: its length is never positive,
 //! so an evaluator needs no count and no branch.
 
+mod ambient;
 mod cap;
 mod encode;
 mod evaluate;
 mod lanes;
 
+pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_open, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
 pub use evaluate::soft_visibility;
@@ -96,8 +98,8 @@ pub struct PageMaps {
     pub lanes: Vec<LaneMaps>,
     /// When texels see the lamp, where the set has one: as many layers as the page's busiest texel needs, up to the cap.
     pub lamp: Option<Vec<LayerMaps>>,
-    /// Ambient occlusion, 0 (closed) to 65535 (open), where the set has it.
-    pub ao: Option<Vec<u16>>,
+    /// How much of the sky texels see, where the set has it.
+    pub ambient: Option<AmbientMaps>,
 }
 
 /// Lengths of the encoded intervals of a texel, for tests and for `sunbake texels`: what is stored, as times.

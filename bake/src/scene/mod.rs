@@ -26,6 +26,7 @@ mod pose;
 mod primitives;
 mod refuse;
 mod resources;
+mod shading;
 #[cfg(test)]
 mod tests;
 mod triangles;
@@ -35,6 +36,7 @@ pub use geometry::{Geometry, SurfaceTriangle};
 pub use limits::LoadLimits;
 pub use load::load;
 pub use materials::BLEND_CUTOFF;
+pub use shading::ShadingNormals;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
 ///

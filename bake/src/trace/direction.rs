@@ -10,9 +10,9 @@ use glam::{DVec3, Vec3};
 pub struct Direction {
     unit: DVec3,
     /// Axis along which the direction is largest, last; the other two in an order that keeps the winding.
-    axes: [usize; 3],
+    pub(super) axes: [usize; 3],
     /// Shear that turns the direction into the last axis.
-    shear: DVec3,
+    pub(super) shear: DVec3,
 }
 
 impl Direction {

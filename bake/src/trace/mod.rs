@@ -14,8 +14,11 @@
 mod cuts;
 mod direction;
 mod reach;
+mod scatter;
+pub(crate) mod wide;
 
 pub use direction::Direction;
+pub use scatter::{PACKET, Scatter, ScatterRoom, ShadowQuery};
 
 use crate::scene::{Geometry, Scene};
 pub(crate) use cuts::CutView;

@@ -4,8 +4,8 @@ use super::place::{CameraChoice, parse_camera};
 use super::when::{When, parse_when};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use sunbake_runtime::Filter;
 use sunbake_runtime::technique::Truth;
+use sunbake_runtime::{AmbientModel, Filter};
 
 /// Plays sunbake's maps back at any time of the day.
 #[derive(Debug, Parser)]
@@ -129,9 +129,12 @@ pub struct LookArgs {
     /// Which lights of the set are on.
     ///
     /// A visibility picture shows the sun's, or the lamp's where the lamp alone is on. A set's lamp is drawn as bright as
-    /// makes it readable.
+    /// makes it readable. `sky` is what comes from all around, and `sun` and `lamp` are without it.
     #[arg(long, value_enum, default_value_t = LightChoice::Both)]
     pub light: LightChoice,
+    /// What light from all around is made of.
+    #[arg(long, value_enum, default_value_t = AmbientChoice::Best)]
+    pub ambient: AmbientChoice,
     /// How stored times are filtered.
     #[arg(long, value_enum, default_value_t = FilterChoice::Bilinear)]
     pub filter: FilterChoice,
@@ -167,12 +170,42 @@ pub enum TechniqueChoice {
 /// Which lights are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum LightChoice {
-    /// The sun alone.
+    /// The sun alone: what it does not reach is black.
     Sun,
+    /// The sky alone.
+    Sky,
     /// The lamp alone.
     Lamp,
     /// All that the set has.
     Both,
+}
+
+/// What light from all around is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum AmbientChoice {
+    /// The best that the set allows.
+    Best,
+    /// The sky of the moment, against what each texel sees of it; sets baked with --sky sh2.
+    Sh2,
+    /// Bent normals and ambient occlusion; sets baked with --bent.
+    Bent,
+    /// Ambient occlusion, and the normal.
+    Ao,
+    /// The normal alone, (1 + n.y) / 2 of sky: what there is without a bake.
+    Hemisphere,
+}
+
+impl AmbientChoice {
+    /// The model, and the flag that bakes what it needs; none for the best.
+    pub fn model(self) -> Option<(AmbientModel, &'static str)> {
+        match self {
+            Self::Best => None,
+            Self::Sh2 => Some((AmbientModel::Sky, "--sky sh2")),
+            Self::Bent => Some((AmbientModel::Bent, "--bent")),
+            Self::Ao => Some((AmbientModel::Openness, "--only intervals,ao")),
+            Self::Hemisphere => Some((AmbientModel::Hemisphere, "")),
+        }
+    }
 }
 
 /// How stored times are filtered.

@@ -2,9 +2,11 @@
 
 use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use super::exit::Failure;
+use clap::ValueEnum;
+use std::path::Path;
 use sunbake_runtime::gpu::{Gpu, GpuError};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
-use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage, View};
+use sunbake_runtime::{AmbientModel, Filter, Moment, Raster, Shot, Stage, View};
 
 /// Most samples of a picture: one of 16384 by 16384.
 const MOST_SAMPLES: u64 = 1 << 28;
@@ -58,12 +60,40 @@ pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
     Ok(View::new(&camera, size, &stage.scene))
 }
 
+/// The set in a folder, with those of its maps that the lights and the model of ambient light call for.
+pub fn stage(folder: &Path, look: &LookArgs, output: OutputChoice) -> Result<Stage, Failure> {
+    let stage = Stage::read(folder)?;
+    let best = stage.best_ambient();
+    let is_lit = output == OutputChoice::Color && matches!(look.light, LightChoice::Both | LightChoice::Sky);
+    let model = match look.ambient.model() {
+        _ if !is_lit => AmbientModel::Hemisphere,
+        None => best,
+        Some((model, _)) if model <= best => model,
+        Some((_, flag)) => {
+            return Err(Failure::usage(format!(
+                "this set's maps do not allow --ambient {}: bake it with {flag}, or leave --ambient out",
+                look.ambient.to_possible_value().map_or_else(String::new, |v| v.get_name().to_owned())
+            )));
+        }
+    };
+    let stage = stage.with_ambient(model);
+    let is_visibility = output == OutputChoice::Visibility;
+    Ok(match look.light {
+        LightChoice::Sky if !is_visibility => stage.without_sun().without_lamp(),
+        LightChoice::Sun => stage.without_lamp(),
+        _ => stage,
+    })
+}
+
 /// The moment `t` with the lights that are to be on.
 pub fn moment(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure> {
     match look.light {
         LightChoice::Both => Ok(stage.moment(t)),
-        LightChoice::Sun => Ok(Moment::new(stage.path.as_ref(), t)),
-        LightChoice::Lamp if stage.lamp.is_some() => Ok(Moment::new(None, t).with_lamp(stage.lamp_moment(t))),
+        LightChoice::Sun => Ok(Moment::new(stage.path.as_ref(), t).without_sky()),
+        LightChoice::Sky => Ok(Moment::new(stage.path.as_ref(), t).without_sun()),
+        LightChoice::Lamp if stage.lamp.is_some() => {
+            Ok(Moment::new(None, t).without_sky().with_lamp(stage.lamp_moment(t)))
+        }
         LightChoice::Lamp => {
             Err(Failure::usage("this set has no lamp: bake one with --lamp FILE, or leave --light lamp out"))
         }

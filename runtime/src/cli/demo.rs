@@ -1,6 +1,6 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
-use super::args::{DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
+use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
 use super::artist::{open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, make_folder, write_rgb};
@@ -117,6 +117,7 @@ fn look(args: &DemoArgs) -> LookArgs {
         filter: FilterChoice::Bilinear,
         supersample: SUPERSAMPLE,
         light: LightChoice::Both,
+        ambient: AmbientChoice::Best,
         renderer: args.renderer,
         threads: args.threads,
     }

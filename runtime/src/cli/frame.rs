@@ -1,19 +1,19 @@
 //! `sunplay frame`.
 
 use super::args::FrameArgs;
-use super::artist::{Picture, draw, moment, open_gpu, set_threads, technique, view};
+use super::artist::{Picture, draw, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
 use super::when::label;
 use serde_json::json;
 use std::time::Instant;
-use sunbake_runtime::{Shot, Stage};
+use sunbake_runtime::Shot;
 
 /// Draws one picture.
 pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     kind(&args.output_file)?;
     set_threads(args.look.threads)?;
-    let stage = Stage::read(&args.set)?;
+    let stage = stage(&args.set, &args.look, args.output)?;
     let t = args.at.on(stage.path.as_ref())?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let moment = moment(&stage, &args.look, t)?;

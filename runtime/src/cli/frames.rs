@@ -1,7 +1,7 @@
 //! `sunplay frames`.
 
 use super::args::FramesArgs;
-use super::artist::{Picture, draw, moment, open_gpu, set_threads, technique, view};
+use super::artist::{Picture, draw, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
 use super::terminal::Terminal;
@@ -9,7 +9,7 @@ use super::when::label;
 use serde_json::json;
 use std::time::Instant;
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
-use sunbake_runtime::{Raster, Shot, Stage};
+use sunbake_runtime::{Raster, Shot};
 
 /// Widest picture on the contact sheet, in pixels.
 const SHEET_PICTURE_WIDTH: u32 = 400;
@@ -21,7 +21,7 @@ const ANIMATION_MS: [u32; 2] = [6000, 400];
 /// Draws a day.
 pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     set_threads(args.look.threads)?;
-    let stage = Stage::read(&args.set)?;
+    let stage = stage(&args.set, &args.look, args.output)?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let gpu = open_gpu(&args.look, args.manners.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;

@@ -7,7 +7,7 @@ use crate::light::Moment;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 use sunbake::scene::{Alpha, Material};
-use sunbake_shaders::{FrameUniform, LampUniform, MaterialUniform, Stream};
+use sunbake_shaders::{FrameUniform, LampUniform, MaterialUniform, SkyUniform, Stream};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Uploads the streams that have vertices.
@@ -36,6 +36,8 @@ pub struct FrameBindings {
     pub group: wgpu::BindGroup,
     /// What is known of the lamp; none in a set without one.
     pub lamp: Option<wgpu::Buffer>,
+    /// The sky in spherical harmonics; none where no page wants it.
+    pub sky: Option<wgpu::Buffer>,
     frame: wgpu::Buffer,
 }
 
@@ -50,11 +52,15 @@ impl FrameBindings {
         });
         let frame = uniform_buffer(gpu, "frame", size_of::<FrameUniform>());
         let lamp = stage.lamp.as_ref().map(|_| uniform_buffer(gpu, "lamp", size_of::<LampUniform>()));
+        let has_sky = stage.pages.iter().flat_map(|page| &page.ambient).any(|ambient| ambient.front.sky.is_some());
+        let sky = has_sky.then(|| uniform_buffer(gpu, "sky", size_of::<SkyUniform>()));
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
-        let mut bindings = vec![(&frame, wgpu::BufferBindingType::Uniform), (&materials, storage)];
-        bindings.extend(lamp.iter().map(|lamp| (lamp, wgpu::BufferBindingType::Uniform)));
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let mut bindings = vec![(0, &frame, uniform), (1, &materials, storage)];
+        bindings.extend(lamp.iter().map(|lamp| (2, lamp, uniform)));
+        bindings.extend(sky.iter().map(|sky| (3, sky, uniform)));
         let (layout, group) = bound(gpu, &bindings);
-        Self { layout, group, lamp, frame }
+        Self { layout, group, lamp, sky, frame }
     }
 
     /// Writes what a frame needs. A lamp that is not to be seen gives no light.
@@ -63,6 +69,10 @@ impl FrameBindings {
         if let Some(buffer) = &self.lamp {
             let lamp = moment.lamp.map_or(bytemuck::Zeroable::zeroed(), |lamp| lamp.uniform());
             gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of::<LampUniform>(&lamp));
+        }
+        if let Some(buffer) = &self.sky {
+            let sky = SkyUniform { coefficients: moment.sky.map(|c| c.extend(0.0).to_array()) };
+            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&sky));
         }
     }
 }
@@ -76,25 +86,24 @@ fn uniform_buffer(gpu: &Gpu, label: &str, size: usize) -> wgpu::Buffer {
     })
 }
 
-/// Buffers at bindings 0, 1, and so on.
-fn bound(gpu: &Gpu, bindings: &[(&wgpu::Buffer, wgpu::BufferBindingType)]) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
-    let layout_entry =
-        |(binding, (_, ty)): (usize, &(&wgpu::Buffer, wgpu::BufferBindingType))| wgpu::BindGroupLayoutEntry {
-            binding: binding as u32,
-            visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-            ty: wgpu::BindingType::Buffer { ty: *ty, has_dynamic_offset: false, min_binding_size: None },
-            count: None,
-        };
-    let entries: Vec<_> = bindings.iter().enumerate().map(layout_entry).collect();
+/// Buffers at their bindings.
+fn bound(
+    gpu: &Gpu,
+    bindings: &[(u32, &wgpu::Buffer, wgpu::BufferBindingType)],
+) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
+    let layout_entry = |&(binding, _, ty): &(u32, &wgpu::Buffer, wgpu::BufferBindingType)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        count: None,
+    };
+    let entries: Vec<_> = bindings.iter().map(layout_entry).collect();
     let layout = gpu
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
-    let numbered = bindings.iter().enumerate();
-    let entries: Vec<_> = numbered
-        .map(|(binding, (buffer, _))| wgpu::BindGroupEntry {
-            binding: binding as u32,
-            resource: buffer.as_entire_binding(),
-        })
+    let entries: Vec<_> = bindings
+        .iter()
+        .map(|(binding, buffer, _)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
         .collect();
     let descriptor = wgpu::BindGroupDescriptor { label: Some("frame"), layout: &layout, entries: &entries };
     let group = gpu.device.create_bind_group(&descriptor);

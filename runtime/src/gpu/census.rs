@@ -17,8 +17,10 @@ pub struct Census {
     pub time_textures: usize,
     /// Bindings of a lamp: one where there is a lamp.
     pub lamp_bindings: usize,
-    /// Textures with ambient occlusion.
-    pub ao_textures: usize,
+    /// Textures with ambient light.
+    pub ambient_textures: usize,
+    /// Bindings of the sky in spherical harmonics: one where a page wants it.
+    pub sky_bindings: usize,
     /// Base colour textures.
     pub base_color_textures: usize,
     /// Vertex buffers.
@@ -29,6 +31,6 @@ pub struct Census {
     pub targets: usize,
     /// Draw calls of a pass over the scene.
     pub draws: usize,
-    /// Bytes of all textures with stored times or ambient occlusion.
+    /// Bytes of all textures with stored times or ambient light.
     pub map_bytes: u64,
 }

@@ -1,11 +1,12 @@
 //! The maps as textures: per page one array of rise and one of fall times, a slice for each layer of each lane.
 
 use super::device::{Gpu, GpuError};
+use crate::playback::ambient_bytes;
 use std::borrow::Cow;
-use sunbake::maps::{Bits, PageMaps};
-use sunbake_shaders::PageVariant;
+use sunbake::maps::{AmbientMaps, AmbientSide, Bits, PageMaps};
+use sunbake_shaders::{AmbientModel, PageVariant};
 
-/// A page's textures and how programs read them. None where the page has neither a sun nor ambient occlusion.
+/// A page's textures and how programs read them. None where the page has neither a sun nor ambient light.
 pub struct PageTextures {
     /// What programs must know of the page.
     pub variant: PageVariant,
@@ -15,6 +16,8 @@ pub struct PageTextures {
     pub bind_group: Option<wgpu::BindGroup>,
     /// Textures with stored times.
     pub time_textures: usize,
+    /// Textures with ambient light.
+    pub ambient_textures: usize,
     /// Bytes of all of its textures.
     pub bytes: u64,
 }
@@ -38,9 +41,10 @@ impl PageTextures {
             bindings.push((1, fall, wgpu::TextureViewDimension::D2Array));
             bytes += maps.texel_count() * u64::from(layers) * u64::from(bits.count());
         }
-        if let Some(ao) = &maps.ao {
-            bindings.push((2, openness(gpu, maps, ao), wgpu::TextureViewDimension::D2));
-            bytes += maps.texel_count() * 2;
+        if let Some(ambient) = &maps.ambient {
+            let views = ambient_views(gpu, maps, ambient, variant.ambient);
+            bindings.extend(views.into_iter().map(|(place, view)| (place, view, wgpu::TextureViewDimension::D2Array)));
+            bytes += maps.texel_count() * ambient_bytes(&variant);
         }
         let lamp_layers = variant.lamp_layer_count;
         if let Some(lamp) = maps.lamp.as_ref().filter(|_| lamp_layers > 0) {
@@ -52,8 +56,9 @@ impl PageTextures {
             bytes += maps.texel_count() * u64::from(lamp_layers) * u64::from(bits.count());
         }
         let time_textures = 2 * (usize::from(layers > 0) + usize::from(lamp_layers > 0));
+        let ambient_textures = bindings.len() - time_textures;
         let (layout, bind_group) = bound(gpu, &bindings).unzip();
-        Ok(Self { variant, layout, bind_group, time_textures, bytes })
+        Ok(Self { variant, layout, bind_group, time_textures, ambient_textures, bytes })
     }
 }
 
@@ -126,11 +131,58 @@ fn times<'a>(
     })
 }
 
-fn openness(gpu: &Gpu, maps: &PageMaps, ao: &[u16]) -> wgpu::TextureView {
+/// The textures that a model of ambient light reads, and their places.
+fn ambient_views(
+    gpu: &Gpu,
+    maps: &PageMaps,
+    ambient: &AmbientMaps,
+    model: AmbientModel,
+) -> Vec<(u32, wgpu::TextureView)> {
+    let sides: Vec<&AmbientSide> = std::iter::once(&ambient.front).chain(&ambient.back).collect();
+    let open = || {
+        let slices = sides.iter().map(|side| bytemuck::cast_slice(&side.open).to_vec());
+        (2, slices_view(gpu, maps, "ambient occlusion", wgpu::TextureFormat::R16Uint, slices.collect()))
+    };
+    let in_rgba = |label, slices| slices_view(gpu, maps, label, wgpu::TextureFormat::Rgba16Uint, slices);
+    match model {
+        AmbientModel::Hemisphere => Vec::new(),
+        AmbientModel::Openness => vec![open()],
+        AmbientModel::Bent => {
+            let bent = sides.iter().flat_map(|side| &side.bent).map(|bent| padded(bent.iter().copied()));
+            vec![open(), (5, in_rgba("bent normals", bent.collect()))]
+        }
+        AmbientModel::Sky => {
+            let of_side = |sky: &Vec<[u16; 9]>| {
+                [0, 1, 2].map(|k| padded(sky.iter().map(|codes| [codes[3 * k], codes[3 * k + 1], codes[3 * k + 2]])))
+            };
+            vec![(6, in_rgba("sky", sides.iter().flat_map(|side| &side.sky).flat_map(of_side).collect()))]
+        }
+    }
+}
+
+/// Three codes a texel as bytes of four.
+fn padded(texels: impl Iterator<Item = [u16; 3]>) -> Vec<u8> {
+    texels.flat_map(|[r, g, b]| [r, g, b, 0]).flat_map(u16::to_ne_bytes).collect()
+}
+
+/// An array texture of these slices.
+fn slices_view(
+    gpu: &Gpu,
+    maps: &PageMaps,
+    label: &str,
+    format: wgpu::TextureFormat,
+    slices: Vec<Vec<u8>>,
+) -> wgpu::TextureView {
     let size = [maps.width, maps.height];
-    let texture = texture(gpu, "ambient occlusion", size, 1, wgpu::TextureFormat::R16Uint);
-    upload(gpu, &texture, 0, 0, size, 2, bytemuck::cast_slice(ao));
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
+    let texture = texture(gpu, label, size, slices.len() as u32, format);
+    let texel_bytes = if format == wgpu::TextureFormat::R16Uint { 2 } else { 8 };
+    for (slice, bytes) in slices.iter().enumerate() {
+        upload(gpu, &texture, 0, slice as u32, size, texel_bytes, bytes);
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
 }
 
 fn texture(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> wgpu::Texture {

@@ -2,22 +2,69 @@
 
 use super::Moment;
 use glam::Vec3;
+use sunbake::ambient::harmonics;
 
 impl Moment {
     /// From horizon to zenith, a glow around the sun, the disc, haze below the horizon. `direction` is unit.
     pub fn sky_color(&self, direction: Vec3) -> Vec3 {
+        let light = &self.daylight;
+        let is_disc = direction.dot(self.sun_direction) > self.sun_cos_radius() && direction.y > 0.0;
+        let below = smoothstep(0.25, -direction.y);
+        let depth = 1.0 - 0.45 * smoothstep(1.0, -direction.y);
+        let disc = if is_disc { 1.0 } else { 0.0 };
+        self.air_color(direction).lerp(light.haze * depth, below) + light.sun_light * (8.0 * disc)
+    }
+
+    /// The sky above the horizon, without the disc.
+    fn air_color(&self, direction: Vec3) -> Vec3 {
         let light = &self.daylight;
         let height = direction.y.max(0.0);
         let up = 1.0 - (-4.0 * height).exp();
         let cos_sun = direction.dot(self.sun_direction);
         let near_sun = (0.5 + 0.5 * cos_sun).max(0.0);
         let aureole = 0.35 * near_sun.powf(8.0) * (1.0 - 0.7 * up) + 0.65 * near_sun.powf(96.0);
-        let air = light.horizon.lerp(light.zenith, up) + light.glow * aureole;
-        let disc = if cos_sun > self.sun_cos_radius() && direction.y > 0.0 { 1.0 } else { 0.0 };
-        let below = smoothstep(0.25, -direction.y);
-        let depth = 1.0 - 0.45 * smoothstep(1.0, -direction.y);
-        air.lerp(light.haze * depth, below) + light.sun_light * (8.0 * disc)
+        light.horizon.lerp(light.zenith, up) + light.glow * aureole
     }
+}
+
+/// Rows and columns of the rule by which the sky is summed up.
+const RULE: [usize; 2] = [24, 48];
+
+impl Moment {
+    /// What the sky and the ground send, in spherical harmonics up to degree two, for surfaces that know how they see it.
+    ///
+    /// Above the horizon it has the sky's own colours, but not the sun's disc, so scaled that level ground receives just
+    /// [`super::Daylight::sky_light`]; below it, [`super::Daylight::ground_light`] from everywhere. In the open, a surface that looks up or down is therefore
+    /// lit as by the plain model of hemispheres; one that looks aside knows which way the sun is.
+    pub(super) fn sky_harmonics(&self) -> [Vec3; harmonics::COUNT] {
+        let mut above = [Vec3::ZERO; harmonics::COUNT];
+        let mut below = [0.0f32; harmonics::COUNT];
+        let mut on_level_ground = Vec3::ZERO;
+        for (direction, weight) in sphere() {
+            let values = harmonics::basis(direction.as_dvec3()).map(|value| value as f32 * weight);
+            if direction.y > 0.0 {
+                let color = self.air_color(direction);
+                on_level_ground += color * (direction.y * weight / std::f32::consts::PI);
+                above.iter_mut().zip(values).for_each(|(sum, value)| *sum += color * value);
+            } else {
+                below.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        let gain = self.daylight.sky_light / on_level_ground.max(Vec3::splat(1e-9));
+        std::array::from_fn(|i| above[i] * gain + self.daylight.ground_light * below[i])
+    }
+}
+
+/// Directions over the sphere and the solid angle of each: even steps of height and of azimuth, none on the horizon.
+fn sphere() -> impl Iterator<Item = (Vec3, f32)> {
+    let [rows, columns] = RULE;
+    let weight = 4.0 * std::f32::consts::PI / (rows * columns) as f32;
+    (0..rows * columns).map(move |i| {
+        let height = ((i / columns) as f32 + 0.5) / rows as f32 * 2.0 - 1.0;
+        let (sin, cos) = (((i % columns) as f32 + 0.5) / columns as f32 * std::f32::consts::TAU).sin_cos();
+        let across = (1.0 - height * height).sqrt();
+        (Vec3::new(across * cos, height, across * sin), weight)
+    })
 }
 
 fn smoothstep(end: f32, x: f32) -> f32 {

@@ -7,7 +7,7 @@ use super::Technique;
 use crate::gpu::GpuError;
 use crate::image::Raster;
 use crate::light::{LampMoment, Moment};
-use crate::playback::Page;
+use crate::playback::{Page, ambient_bytes, page_variant};
 use crate::shade::towards_eye;
 use crate::shot::Shot;
 use crate::stage::Stage;
@@ -79,7 +79,7 @@ pub(super) fn map_bytes(stage: &Stage) -> u64 {
         let of_lamp = page.lamp.as_ref().map_or(0, Vec::len);
         let layers = of_lamp + page.lanes.iter().map(|lane| lane.layers.len()).sum::<usize>();
         let layer_bytes = u64::from(stage.bits.count()) / 8 * 4 * 2;
-        layers as u64 * layer_bytes + if page.ao.is_some() { 2 } else { 0 }
+        layers as u64 * layer_bytes + ambient_bytes(&page_variant(page, stage.bits, 0.0))
     };
     stage.pages.iter().map(|page| u64::from(page.width) * u64::from(page.height) * texel_bytes(page)).sum()
 }

@@ -8,7 +8,8 @@ fn lit_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     let face = towards_eye(varyings.front_normal, varyings, ray);
     let normal = towards_eye(normalize(varyings.shading_normal.xyz), varyings, ray);
     let visibility = sun_visibility(varyings.page_uv, face);
-    let light = shade(material, base_color.rgb, normal, visibility, openness(varyings.page_uv));
+    let ambient = ambient_light(varyings.page_uv, normal, side_of_page(varyings, ray));
+    let light = shade(material, base_color.rgb, normal, visibility, ambient);
     let way_m = way_to_lamp(varyings, ray);
     let of_lamp = lamp_shade(material, base_color.rgb, normal, way_m, lamp_visibility(varyings.page_uv, face, way_m));
     return vec4<f32>(light + of_lamp, 1.0);

@@ -16,7 +16,7 @@
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use super::wide::{Leaf, Node, Points};
+use crate::trace::wide::{Leaf, Node, Points};
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;

@@ -67,19 +67,18 @@ mod near;
 mod seeds;
 mod solve;
 mod walk;
-mod wide;
 
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
+use crate::trace::wide::Wide;
 use arc::ArcFrame;
 use boxes::Frames;
 use cover::{Coverer, Query};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat3, DVec3};
 use walk::Walk;
-use wide::Wide;
 
 /// Growth of every box, tracer space (whose half size is 512 to 1024): four times the steps of an `f32` that turning a
 /// box into another frame can amount to.

@@ -3,7 +3,7 @@
 use super::boxes::{Frames, Wanted, leaf_met, node_met};
 use super::cover::{Coverer, Query};
 use super::solve::{LANES, Packet};
-use super::wide::{Child, WIDTH, Wide};
+use crate::trace::wide::{Child, WIDTH, Wide};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 

@@ -5,24 +5,24 @@
 //! not opened. Boxes are held as centres and half sizes, since those turn into another frame at the cost of two products of
 //! a matrix. Leaves hold corners, rounded to `f32`: they tell which triangles are worth solving far better than boxes do.
 
-use crate::trace::{BinaryNode, Tracer};
+use super::{BinaryNode, Tracer};
 use glam::{DMat3, Vec3};
 
 /// Lanes of a node and of a leaf.
-pub(super) const WIDTH: usize = 16;
+pub(crate) const WIDTH: usize = 16;
 
 /// By axis and lane.
-pub(super) type Points = [[f32; WIDTH]; 3];
+pub(crate) type Points = [[f32; WIDTH]; 3];
 
 /// The hierarchy. Boxes are along axes of the caller's choice. The first node is the root; there is none without triangles.
-pub(super) struct Wide {
+pub(crate) struct Wide {
     pub nodes: Vec<Node>,
     pub leaves: Vec<Leaf>,
 }
 
 /// Up to sixteen boxes. Lanes from `count` on are not to be used.
 #[derive(Default)]
-pub(super) struct Node {
+pub(crate) struct Node {
     pub centre: Points,
     pub half: Points,
     pub child: [Child; WIDTH],
@@ -31,7 +31,7 @@ pub(super) struct Node {
 
 /// Up to sixteen triangles. Lanes from `count` on are not to be used.
 #[derive(Default)]
-pub(super) struct Leaf {
+pub(crate) struct Leaf {
     pub corners: [Points; 3],
     /// Indices among the tracer's triangles.
     pub ids: [u32; WIDTH],
@@ -40,7 +40,7 @@ pub(super) struct Leaf {
 
 /// What is in a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Child {
+pub(crate) enum Child {
     /// An index among the nodes.
     Node(u32),
     /// An index among the leaves.
@@ -67,7 +67,7 @@ impl Wide {
             [a.min(b).min(c) - padding, a.max(b).max(c) + padding]
         };
         let boxes: Vec<[Vec3; 2]> = tracer.corners().iter().map(bounds).collect();
-        let (tree, order) = crate::trace::binary_hierarchy(&boxes);
+        let (tree, order) = super::binary_hierarchy(&boxes);
         let mut collapse = Collapse {
             triangles: triangles_below(&tree),
             corners: &|id| turned(&tracer.corners()[id as usize]),

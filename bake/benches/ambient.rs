@@ -1,0 +1,208 @@
+//! Ambient occlusion: rays a second, error against time, threads: `cargo bench -p sunbake --bench ambient`.
+//!
+//! Our own scene and three shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
+//! repository), each laid out on a page of 1024. Error is measured on runs of neighbouring texels drawn evenly from the
+//! page, against [`TRUTH_RAYS`] rays of other seeds. The rivals take turns, so that whatever else the machine does falls on
+//! all alike: this crate's estimate, and *plain random* sampling, which asks the same hierarchy in independent directions.
+//!
+//! Options after `--`: `size=1024 runs=12 scene=NAME only=error|pages|threads plot=FILE.svg`.
+
+mod common;
+
+use glam::DVec3;
+use std::collections::HashMap;
+use std::time::Instant;
+use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, find_ambient};
+use sunbake::atlas::{self, Atlas, AtlasSettings, PageSamples, Sample};
+use sunbake::scene::{Geometry, LoadLimits, Scene, ShadingNormals, load};
+use sunbake::testing::pseudo_random;
+use sunbake::trace::{Scatter, ScatterRoom, ShadowQuery, Tracer};
+
+const SHARED: [&str; 3] =
+    ["osrf_city/osrf_city.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
+/// Rays of what errors are measured against.
+const TRUTH_RAYS: u32 = 16_384;
+/// Texels of a run.
+const RUN: usize = 512;
+
+fn main() {
+    let given: HashMap<String, String> =
+        std::env::args().filter_map(|a| a.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned()))).collect();
+    let number = |key: &str, otherwise: usize| given.get(key).and_then(|v| v.parse().ok()).unwrap_or(otherwise);
+    let wants = |part: &str| given.get("only").is_none_or(|only| only == part);
+    for file in common::scenes(&SHARED) {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if given.get("scene").is_some_and(|wanted| *wanted != name) {
+            continue;
+        }
+        let scene = match load(&file, &LoadLimits::default()) {
+            Ok(scene) => scene,
+            Err(error) => {
+                println!("{name}: {error}");
+                continue;
+            }
+        };
+        let page = Page::new(&scene, number("size", 1024) as u32);
+        println!("\n{name}: {} triangles, {} texels", scene.triangle_count(), page.texels.len());
+        if wants("pages") {
+            pages(&page);
+        }
+        if wants("threads") {
+            threads(&page);
+        }
+        if wants("error") {
+            errors(&page, number("runs", 12));
+        }
+    }
+}
+
+/// A page of a scene, ready to be asked about.
+struct Page<'a> {
+    scene: &'a Scene,
+    geometry: Geometry,
+    normals: ShadingNormals,
+    tracer: Tracer,
+    texels: Vec<Sample>,
+}
+
+impl<'a> Page<'a> {
+    fn new(scene: &'a Scene, edge: u32) -> Self {
+        let settings = AtlasSettings { page_size_texels: edge, ..AtlasSettings::default() };
+        let atlas: Atlas = atlas::build(scene, &settings, &|_| true).expect("an atlas");
+        let geometry = Geometry::new(scene);
+        let PageSamples { samples } = atlas::sample_page(scene, &geometry, &atlas, 0);
+        let order = atlas::by_tiles(&PageSamples { samples: samples.clone() }, atlas.pages[0]);
+        let texels = order.iter().map(|&i| samples[i as usize]).collect();
+        let tracer = Tracer::new(scene, &geometry);
+        Self { scene, normals: ShadingNormals::new(scene), tracer, geometry, texels }
+    }
+
+    fn point(&self, index: usize) -> AmbientPoint {
+        let sample = &self.texels[index];
+        let weights = sample.barycentric.map(f64::from);
+        let shading_normal = self.normals.at(self.scene, &self.geometry, sample.triangle as usize, weights);
+        AmbientPoint { surface: atlas::surface_point(self.scene, &self.geometry, sample), shading_normal }
+    }
+
+    fn engine(&self, settings: AmbientSettings) -> AmbientEngine<'_> {
+        AmbientEngine::new(self.scene, &self.geometry, &self.tracer, settings)
+    }
+
+    /// Openness of some texels, and rays traced.
+    fn open(&self, engine: &AmbientEngine, texels: &[usize]) -> (Vec<f64>, u64) {
+        let texel = |i: usize, points: &mut Vec<AmbientPoint>| {
+            points.push(self.point(texels[i]));
+        };
+        let runs = find_ambient(engine, texels.len(), texel, |_| true).expect("nobody stops it");
+        let rays = runs.iter().map(|run| run.rays).sum();
+        (runs.iter().flat_map(|run| &run.front).map(|estimate| f64::from(estimate.open)).collect(), rays)
+    }
+}
+
+fn settings(rays: u32) -> AmbientSettings {
+    AmbientSettings { rays, distance_m: None, error: None, wants_bent: false, wants_sky: false, seed: 0 }
+}
+
+fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> (T, f64) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    pool.install(|| {
+        let start = Instant::now();
+        let value = work();
+        (value, start.elapsed().as_secs_f64())
+    })
+}
+
+/// Whole pages.
+fn pages(page: &Page) {
+    let all: Vec<usize> = (0..page.texels.len()).collect();
+    println!("{:<28}{:>9}{:>12}{:>12}", "whole page, all threads", "seconds", "M rays/s", "us a texel");
+    let extent_m = page.scene.half_extent_m.max_element();
+    let cases = [
+        ("64 rays", settings(64)),
+        ("256 rays", settings(256)),
+        ("64, bent and sh2", AmbientSettings { wants_bent: true, wants_sky: true, ..settings(64) }),
+        ("64, within a tenth", AmbientSettings { distance_m: Some(0.1 * extent_m), ..settings(64) }),
+        ("to 0.02, at most 4096", AmbientSettings { error: Some(0.02), ..settings(4096) }),
+    ];
+    for (name, settings) in cases {
+        let start = Instant::now();
+        let engine = page.engine(settings);
+        let (_, rays) = page.open(&engine, &all);
+        let seconds = start.elapsed().as_secs_f64();
+        let a_texel = seconds / all.len() as f64 * 1e6;
+        println!("{name:<28}{seconds:>9.2}{:>12.2}{a_texel:>12.2}", rays as f64 / seconds / 1e6);
+    }
+}
+
+/// One thread against two.
+fn threads(page: &Page) {
+    let all: Vec<usize> = (0..page.texels.len()).collect();
+    let engine = page.engine(settings(64));
+    let mut seconds = [0.0; 2];
+    for _ in 0..3 {
+        for (threads, sum) in [1, 2].into_iter().zip(&mut seconds) {
+            *sum += on(threads, || page.open(&engine, &all)).1;
+        }
+    }
+    println!("two threads: {:.2} times one", seconds[0] / seconds[1]);
+}
+
+/// Error against time, one thread.
+fn errors(page: &Page, runs: usize) {
+    let step = (page.texels.len() / runs.max(1)).max(RUN);
+    let texels: Vec<usize> =
+        (0..page.texels.len()).step_by(step).flat_map(|s| s..(s + RUN).min(page.texels.len())).collect();
+    let truth = page.open(&page.engine(AmbientSettings { seed: 1, ..settings(TRUTH_RAYS) }), &texels).0;
+    let scatter = Scatter::new(&page.tracer);
+    println!(
+        "{:<8}{:>12}{:>12}{:>12}{:>12}{:>14}",
+        "rays", "us a texel", "rms error", "random: us", "rms error", "at equal time"
+    );
+    let mut last: Option<f64> = None;
+    for rays in (2..=12).map(|bits| 1u32 << bits) {
+        let engine = page.engine(settings(rays));
+        let ((found, _), ours_s) = on(1, || page.open(&engine, &texels));
+        let (plain, plain_s) = on(1, || random(page, &scatter, &texels, rays));
+        let [ours, theirs] = [&found, &plain].map(|found| rms(found, &truth));
+        // Random error falls with the square root of time.
+        let at_equal_time = theirs * (plain_s / ours_s).sqrt();
+        let per = |seconds: f64| seconds / texels.len() as f64 * 1e6;
+        let slope = last.map_or(String::new(), |before| format!("  N^{:.2}", (ours / before).log2()));
+        println!(
+            "{rays:<8}{:>12.2}{ours:>12.5}{:>12.2}{theirs:>12.5}{:>13.2}x{slope}",
+            per(ours_s),
+            per(plain_s),
+            ours / at_equal_time
+        );
+        last = Some(ours);
+    }
+}
+
+fn rms(found: &[f64], truth: &[f64]) -> f64 {
+    (found.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / truth.len() as f64).sqrt()
+}
+
+/// Independent directions, the plain way: no net, no order, no guesses.
+fn random(page: &Page, scatter: &Scatter, texels: &[usize], rays: u32) -> Vec<f64> {
+    let mut room = ScatterRoom::default();
+    let mut answer = |&index: &usize| {
+        let AmbientPoint { surface, shading_normal } = page.point(index);
+        let mut state = index as u64 ^ 0x51_7cc1_b727;
+        let origin_m = page.tracer.lift(surface.position_m, surface.normal, surface.triangle);
+        let (across, up) = shading_normal.any_orthonormal_pair();
+        let (mut count, mut free) = (0u32, 0u32);
+        for _ in 0..rays {
+            let radius = pseudo_random(&mut state).sqrt();
+            let (sin, cos) = (pseudo_random(&mut state) * std::f64::consts::TAU).sin_cos();
+            let height = (1.0 - radius * radius).max(0.0).sqrt();
+            let direction: DVec3 = across * (radius * cos) + up * (radius * sin) + shading_normal * height;
+            if direction.dot(surface.normal) > 0.0 {
+                count += 1;
+                let ray = ShadowQuery { origin_m, direction, triangle: surface.triangle };
+                free += u32::from(scatter.occluded(&mut room, &[ray], &mut None) == 0);
+            }
+        }
+        f64::from(free) / f64::from(count.max(1))
+    };
+    texels.iter().map(&mut answer).collect()
+}

@@ -1,0 +1,86 @@
+//! Whether a point lies inside a solid.
+//!
+//! Theory: from inside a closed, outward-facing mesh every way out leads through the back of one of its triangles. From a
+//! point that an eye can see, some ray meets a front, a surface with two sides, or nothing.
+//!
+//! Practice: a few rays over the hemisphere, and the first that escapes settles it, which is the first or second for nearly
+//! every point. Where a back and a front coincide (doubled faces, both windings), the front is believed.
+
+use super::directions::{Draw, Frame, draw_block};
+use super::estimate::AmbientPoint;
+use crate::scene::{Geometry, Scene};
+use crate::trace::{Direction, Scatter, ScatterRoom, Tracer};
+use glam::DVec3;
+
+/// Rays that are asked at most.
+const RAYS: u32 = 16;
+/// Seed of their directions: the same for all points.
+const SEED: u32 = 0x5eed;
+/// How many of them may escape, by chance, through what a mesh is not closed by.
+const ESCAPES: u32 = 0;
+/// A front this much farther than a back, as a share of the distance, counts as being at the same place.
+const SAME_PLACE: f64 = 1e-5;
+
+/// Tells which points are buried.
+pub(super) struct Burial<'a> {
+    scene: &'a Scene,
+    geometry: &'a Geometry,
+    tracer: &'a Tracer,
+    draws: Vec<Draw>,
+    /// Whether there is any single-sided surface.
+    has_backs: bool,
+}
+
+impl<'a> Burial<'a> {
+    pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer) -> Self {
+        let mut draws = vec![Draw::default(); RAYS as usize];
+        draw_block(SEED, 0, RAYS, &mut draws);
+        let has_backs = (0..scene.instances.len()).any(|i| !scene.material(i).is_double_sided);
+        Self { scene, geometry, tracer, draws, has_backs }
+    }
+
+    /// Whether nothing but backs is seen from a point, on any side of it. Adds the rays that it took.
+    pub fn is_buried(&self, scatter: &Scatter, room: &mut ScatterRoom, point: &AmbientPoint, rays: &mut u64) -> bool {
+        let sides = if point.surface.is_double_sided { 2 } else { 1 };
+        self.has_backs
+            && [1.0, -1.0].iter().take(sides).all(|side| {
+                let normal = point.surface.normal * *side;
+                self.sees_backs_alone(scatter, room, point, normal, rays)
+            })
+    }
+
+    fn sees_backs_alone(
+        &self,
+        scatter: &Scatter,
+        room: &mut ScatterRoom,
+        point: &AmbientPoint,
+        normal: DVec3,
+        rays: &mut u64,
+    ) -> bool {
+        let frame = Frame::new(normal);
+        let origin_m = self.tracer.lift(point.surface.position_m, normal, point.surface.triangle);
+        let mut escaped = 0;
+        for draw in &self.draws {
+            *rays += 1;
+            escaped += u32::from(!self.meets_back(scatter, room, origin_m, frame.direction(draw)));
+            if escaped > ESCAPES {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn meets_back(&self, scatter: &Scatter, room: &mut ScatterRoom, origin_m: DVec3, direction: DVec3) -> bool {
+        let Some(hit) = scatter.nearest(room, origin_m, direction, f64::INFINITY) else { return false };
+        let is_back = |triangle: u32| {
+            let instance = self.geometry.instance[triangle as usize] as usize;
+            !self.scene.material(instance).is_double_sided
+                && self.geometry.normal(triangle as usize).dot(direction) > 0.0
+        };
+        if !is_back(hit.triangle) {
+            return false;
+        }
+        let front = self.tracer.closest_hit_where(origin_m, &Direction::new(direction), |t| !is_back(t));
+        front.is_none_or(|front| front.distance_m > hit.distance_m * (1.0 + SAME_PLACE) + self.tracer.run_up_m())
+    }
+}

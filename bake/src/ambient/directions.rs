@@ -1,0 +1,162 @@
+//! Directions over a hemisphere, cosine-weighted, in an order that keeps what follows one another close together.
+//!
+//! Theory: a sequence in the unit square, carried onto the disc by Shirley and Chiu's map ("A low distortion map between
+//! disk and square", *Journal of Graphics Tools* 2(3), 1997) and up onto the hemisphere, has a density that falls with the
+//! cosine (Malley's method). The sequence is Sobol's first two dimensions, Owen-scrambled with another seed for each of a number of texels
+//! (Burley, "Practical hash-based Owen scrambling", *Journal of Computer Graphics Techniques* 9(4), 2020): any aligned block
+//! of 2^m of them has one point in every elementary box of area 2^-m, so that the error of a mean falls faster than that of
+//! independent points.
+//!
+//! Practice: the same property says where a block's points lie before they are drawn. Sorted by the cell that each is
+//! in, the rays of neighbouring texels go nearly the same way, cell by cell, and ask for the same part of the hierarchy.
+
+use glam::{DVec3, Vec2, Vec3};
+use rayon::prelude::*;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// Most rays that are sorted together.
+pub(super) const BLOCK: u32 = 256;
+/// How many sequences there are at most. Neighbouring texels never use the same one; those that do are told apart by where
+/// they are, and their errors look like noise.
+const MOST_SEQUENCES: u32 = 64;
+/// Rays of all sequences together, above which there are fewer sequences.
+const MOST_DRAWS: u32 = 1 << 20;
+/// Fewest sequences: more than texels ask together.
+const LEAST_SEQUENCES: u32 = 32;
+
+/// Draws of several sequences, ready to be used.
+pub(super) struct Draws {
+    sequences: Vec<Vec<Draw>>,
+}
+
+/// A direction about a normal, and a number in [0, 1) to pick one of a texel's points with.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Draw {
+    /// Across, across and along the normal.
+    pub local: Vec3,
+    pub pick: f32,
+}
+
+impl Draws {
+    /// `rays` of each sequence, in blocks of the given lengths, which add up to it. Each is a power of two up to [`BLOCK`]
+    /// and starts at a multiple of itself; its draws are in the order of [`cell`].
+    pub fn new(seed: u32, rays: u32, blocks: &[u32]) -> Self {
+        let count = (MOST_DRAWS / rays).clamp(LEAST_SEQUENCES, MOST_SEQUENCES);
+        let sequence = |index: u32| {
+            let mut draws = vec![Draw::default(); rays as usize];
+            let mut first = 0;
+            for &length in blocks {
+                draw_block(
+                    seed.wrapping_mul(MOST_SEQUENCES) + index,
+                    first,
+                    length,
+                    &mut draws[first as usize..][..length as usize],
+                );
+                first += length;
+            }
+            draws
+        };
+        Self { sequences: (0..count).into_par_iter().map(sequence).collect() }
+    }
+
+    /// The sequence of a texel: another one for each seed up to their number.
+    #[inline]
+    pub fn of(&self, seed: u32) -> &[Draw] {
+        &self.sequences[seed as usize % self.sequences.len()]
+    }
+}
+
+/// Rays `first..first + count` of a sequence, one a cell of the square, in the order of [`cell`].
+pub(super) fn draw_block(seed: u32, first: u32, count: u32, draws: &mut [Draw]) {
+    for index in first..first + count {
+        let [x, y, pick, _] = sobol_burley::sample_4d(index, 0, seed);
+        let disc = on_disc(Vec2::new(x, y));
+        let up = (1.0 - disc.length_squared()).max(0.0).sqrt();
+        draws[cell([x, y], count) as usize] = Draw { local: disc.extend(up), pick };
+    }
+}
+
+/// In which of `count` cells, a power of two, a point lies: 2^a columns by 2^b rows, in boustrophedon order, so that cells
+/// that follow one another touch.
+fn cell([x, y]: [f32; 2], count: u32) -> u32 {
+    let bits = count.ilog2();
+    let (columns, rows) = (1u32 << bits.div_ceil(2), 1u32 << (bits / 2));
+    let (column, row) = ((x * columns as f32) as u32, (y * rows as f32) as u32);
+    row * columns + if row % 2 == 0 { column } else { columns - 1 - column }
+}
+
+/// Three axes with a normal as the last.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    across: [DVec3; 2],
+    normal: DVec3,
+}
+
+impl Frame {
+    pub fn new(normal: DVec3) -> Self {
+        Self { across: normal.any_orthonormal_pair().into(), normal }
+    }
+
+    /// A direction about the normal.
+    #[inline]
+    pub fn direction(&self, draw: &Draw) -> DVec3 {
+        let local = draw.local.as_dvec3();
+        self.across[0] * local.x + self.across[1] * local.y + self.normal * local.z
+    }
+}
+
+/// The concentric map from the unit square to the unit disc.
+#[inline]
+fn on_disc(point: Vec2) -> Vec2 {
+    let centred = point * 2.0 - 1.0;
+    if centred == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    let (radius, angle) = match centred.x.abs() > centred.y.abs() {
+        true => (centred.x, FRAC_PI_4 * (centred.y / centred.x)),
+        false => (centred.y, FRAC_PI_2 - FRAC_PI_4 * (centred.x / centred.y)),
+    };
+    Vec2::from_angle(angle) * radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_aligned_block_has_one_point_in_every_cell() {
+        for (seed, first, count) in [(0, 0, 1), (1, 0, 2), (7, 64, 64), (9, 128, 128), (123_456, 768, 256)] {
+            let mut draws = vec![Draw { local: Vec3::NAN, pick: 0.0 }; count as usize];
+            draw_block(seed, first, count, &mut draws);
+            assert!(draws.iter().all(|draw| draw.local.is_finite()), "seed {seed}, {count} points from {first}");
+        }
+    }
+
+    #[test]
+    fn cells_that_follow_one_another_touch() {
+        for count in [64u32, 128] {
+            let mut centres = vec![Vec2::NAN; count as usize];
+            let (columns, rows) = if count == 64 { (8, 8) } else { (16, 8) };
+            for y in 0..rows {
+                for x in 0..columns {
+                    let centre = [(x as f32 + 0.5) / columns as f32, (y as f32 + 0.5) / rows as f32];
+                    centres[cell(centre, count) as usize] = Vec2::new(x as f32, y as f32);
+                }
+            }
+            assert!(centres.windows(2).all(|w| w[0].distance(w[1]) == 1.0));
+        }
+    }
+
+    #[test]
+    fn directions_are_unit_and_as_dense_as_the_cosine() {
+        let normal = DVec3::new(0.3, -0.5, 0.2).normalize();
+        let frame = Frame::new(normal);
+        let mut draws = vec![Draw::default(); 256];
+        draw_block(5, 0, 256, &mut draws);
+        let directions: Vec<DVec3> = draws.iter().map(|draw| frame.direction(draw)).collect();
+        assert!(directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-6 && d.dot(normal) >= 0.0));
+        // Means over a cosine-weighted hemisphere: cos is 2/3, cos^2 is 1/2.
+        let mean = |f: &dyn Fn(f64) -> f64| directions.iter().map(|d| f(d.dot(normal))).sum::<f64>() / 256.0;
+        assert!((mean(&|c| c) - 2.0 / 3.0).abs() < 2e-3 && (mean(&|c| c * c) - 0.5).abs() < 2e-3);
+    }
+}

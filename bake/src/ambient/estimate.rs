@@ -1,0 +1,349 @@
+//! The estimate: rays over hemispheres, neighbouring texels together.
+//!
+//! **Error.** With an error E given, a block's rays are doubled until they are enough. The two halves of a texel's rays are
+//! two estimates of equal standing; half their difference has the standard error of their mean. It is pooled over
+//! the block's texels (sixteen neighbours, one degree of freedom each), and they stop together once 1.96 times the pooled
+//! error is below E. Halves of a net err less together than that says, so that more than 95 of 100 texels are within E.
+//! What is smaller than the gaps between the first [`LEAST_RAYS`] rays of sixteen texels may go unseen.
+
+use super::AmbientSettings;
+use super::buried::Burial;
+use super::directions::{BLOCK, Draw, Draws, Frame};
+use super::harmonics::{self, Coefficients};
+use super::hidden_share;
+use crate::atlas::SurfacePoint;
+use crate::scene::{Geometry, Scene};
+use crate::trace::{Occluder, PACKET, Scatter, ScatterRoom, ShadowQuery, Tracer};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Texels that ask together.
+const TOGETHER: usize = PACKET;
+/// Texels whose guesses are kept from one to the next: a task of a thread.
+const RUN: usize = 512;
+/// Rays before an error is first judged.
+const LEAST_RAYS: u32 = 32;
+/// Standard errors that hold 95 of 100 of a normal distribution.
+const CONFIDENCE: f64 = 1.96;
+/// Openness up to which a texel is looked at for being buried.
+const DARK: f64 = 0.1;
+
+/// A point that ambient light is asked about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AmbientPoint {
+    /// Where it is.
+    pub surface: SurfacePoint,
+    /// Unit normal that the surface is meant to have there, on its front.
+    pub shading_normal: DVec3,
+}
+
+/// What one side of a texel sees of the sky.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Estimate {
+    /// Cosine-weighted free share of the hemisphere, 0 to 1.
+    pub open: f32,
+    /// Mean free direction, bake space, which is turned like world space. Zero unless asked for.
+    pub bent: Vec3,
+    /// Transfer vector. Zero unless asked for.
+    pub sky: Coefficients,
+}
+
+/// Estimates of a run of texels.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Estimates {
+    /// Of the fronts.
+    pub front: Vec<Estimate>,
+    /// Of the backs of double-sided texels, by their place in the run, ascending.
+    pub back: Vec<(u32, Estimate)>,
+    /// Whether texels lie inside a solid.
+    pub buried: Vec<bool>,
+    /// Rays traced.
+    pub rays: u64,
+}
+
+/// Estimates ambient light.
+pub struct AmbientEngine<'a> {
+    tracer: &'a Tracer,
+    scatter: Scatter<'a>,
+    burial: Burial<'a>,
+    settings: AmbientSettings,
+    /// Rays are traced in blocks of these lengths.
+    blocks: Vec<u32>,
+    draws: Draws,
+}
+
+impl<'a> AmbientEngine<'a> {
+    /// Builds its hierarchy.
+    pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, settings: AmbientSettings) -> Self {
+        let burial = Burial::new(scene, geometry, tracer);
+        let blocks = blocks(&settings);
+        let draws = Draws::new(settings.seed, settings.rays, &blocks);
+        Self { tracer, scatter: Scatter::new(tracer), burial, settings, blocks, draws }
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &AmbientSettings {
+        &self.settings
+    }
+}
+
+/// Asks about texels 0 to `count`, on all threads of the current pool; neighbours should follow one another. `texel` adds
+/// the points of one, on which its rays are spread. Which directions they take follows from its place in the order. Answers come in that order, run by run. `on_progress` gets the number of texels that were done and returns false
+/// to stop; then there is no answer.
+pub fn find_ambient(
+    engine: &AmbientEngine,
+    count: usize,
+    texel: impl Fn(usize, &mut Vec<AmbientPoint>) + Sync,
+    on_progress: impl Fn(usize) -> bool + Sync,
+) -> Option<Vec<Estimates>> {
+    let run = |run: usize| {
+        let range = run * RUN..count.min((run + 1) * RUN);
+        let mut room = Room::new(engine.settings.rays);
+        let mut answers = Estimates::default();
+        for start in range.clone().step_by(TOGETHER) {
+            room.gather(start..range.end.min(start + TOGETHER), &texel);
+            engine.ask(&mut room, &mut answers);
+        }
+        on_progress(range.len()).then_some(answers)
+    };
+    (0..count.div_ceil(RUN)).into_par_iter().map(run).collect()
+}
+
+/// The blocks in which rays are traced: whole ones or, where an error may stop them, first few and then as many again.
+fn blocks(settings: &AmbientSettings) -> Vec<u32> {
+    let most = settings.rays.min(BLOCK);
+    let mut traced = if settings.error.is_some() { LEAST_RAYS.min(most) } else { most };
+    let mut blocks = vec![traced];
+    while traced < settings.rays {
+        blocks.push(traced.min(most));
+        traced += traced.min(most);
+    }
+    blocks
+}
+
+/// A number for the directions of the texel at a place in the order: those of a block are all different.
+fn seed_of(index: usize) -> u32 {
+    let (block, texel) = ((index / TOGETHER) as u32, (index % TOGETHER) as u32);
+    // Low bits of a product are as orderly as its factor's; high bits are not.
+    (block.wrapping_mul(0x9e37_79b9) >> 16).wrapping_add(texel)
+}
+
+/// What is used anew by every block of texels.
+struct Room {
+    walk: ScatterRoom,
+    texels: Vec<Texel>,
+    points: Vec<AmbientPoint>,
+    queries: Vec<ShadowQuery>,
+    /// For each side and cell of the hemisphere, what last hid a ray.
+    guesses: [Vec<Option<Occluder>>; 2],
+}
+
+/// A texel of the block at hand.
+struct Texel {
+    seed: u32,
+    points: Range<usize>,
+    /// Where the rays of its points start, on the side at hand.
+    seats: Vec<Seat>,
+    tally: Tally,
+    /// Sum of the first half of the rays, and how many those are.
+    half: (f64, u32),
+}
+
+/// A point of a texel on one of its sides.
+struct Seat {
+    origin_m: DVec3,
+    plane: DVec3,
+    frame: Frame,
+    triangle: u32,
+}
+
+/// Sums over a texel's rays.
+#[derive(Default, Clone, Copy)]
+struct Tally {
+    /// Rays before the surface's plane.
+    count: u32,
+    free: f64,
+    bent: DVec3,
+    sky: [f64; harmonics::COUNT],
+}
+
+impl Room {
+    fn new(rays: u32) -> Self {
+        let cells = rays.min(BLOCK) as usize;
+        Self {
+            walk: ScatterRoom::default(),
+            texels: Vec::new(),
+            points: Vec::new(),
+            queries: Vec::new(),
+            guesses: [vec![None; cells], vec![None; cells]],
+        }
+    }
+
+    fn gather(&mut self, range: Range<usize>, texel: &(impl Fn(usize, &mut Vec<AmbientPoint>) + Sync)) {
+        self.points.clear();
+        self.texels.clear();
+        for index in range {
+            let first = self.points.len();
+            texel(index, &mut self.points);
+            let seed = seed_of(index);
+            debug_assert!(first < self.points.len(), "a texel has a point at least");
+            let texel = Texel {
+                seed,
+                points: first..self.points.len(),
+                seats: Vec::new(),
+                tally: Tally::default(),
+                half: (0.0, 0),
+            };
+            self.texels.push(texel);
+        }
+    }
+
+    fn is_double_sided(&self, texel: usize) -> bool {
+        self.points[self.texels[texel].points.start].surface.is_double_sided
+    }
+}
+
+impl AmbientEngine<'_> {
+    /// Answers for the texels that were gathered.
+    fn ask(&self, room: &mut Room, answers: &mut Estimates) {
+        let first = answers.front.len();
+        self.ask_side(room, 0, &mut answers.rays);
+        for index in 0..room.texels.len() {
+            let estimate = self.estimate(&room.texels[index].tally);
+            answers.front.push(estimate);
+            answers.buried.push(self.is_buried(room, index, &estimate, &mut answers.rays));
+        }
+        if (0..room.texels.len()).any(|index| room.is_double_sided(index)) {
+            self.ask_side(room, 1, &mut answers.rays);
+            for index in (0..room.texels.len()).filter(|&index| room.is_double_sided(index)) {
+                answers.back.push(((first + index) as u32, self.estimate(&room.texels[index].tally)));
+            }
+        }
+    }
+
+    fn is_buried(&self, room: &mut Room, texel: usize, estimate: &Estimate, rays: &mut u64) -> bool {
+        // Without a distance, what is buried sees nothing.
+        if self.settings.distance_m.is_none() && f64::from(estimate.open) > DARK {
+            return false;
+        }
+        let points = room.texels[texel].points.clone();
+        room.points[points].iter().all(|point| self.burial.is_buried(&self.scatter, &mut room.walk, point, rays))
+    }
+
+    fn ask_side(&self, room: &mut Room, side: usize, rays: &mut u64) {
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        for texel in &mut room.texels {
+            let seat = |point: &AmbientPoint| {
+                let plane = point.surface.normal * sign;
+                let origin_m = self.tracer.lift(point.surface.position_m, plane, point.surface.triangle);
+                Seat {
+                    origin_m,
+                    plane,
+                    frame: Frame::new(point.shading_normal * sign),
+                    triangle: point.surface.triangle,
+                }
+            };
+            let points = &room.points[texel.points.clone()];
+            let is_asked = side == 0 || points[0].surface.is_double_sided;
+            texel.seats.clear();
+            texel.seats.extend(points.iter().filter(|_| is_asked).map(seat));
+            (texel.tally, texel.half) = (Tally::default(), (0.0, 0));
+        }
+        let mut traced = 0;
+        for &count in &self.blocks {
+            self.trace(room, side, traced, count as usize);
+            traced += count;
+            if self.settings.error.is_some_and(|error| traced.is_power_of_two() && is_within(room, traced, error)) {
+                break;
+            }
+        }
+        *rays += room.texels.iter().map(|texel| u64::from(texel.tally.count)).sum::<u64>();
+    }
+
+    /// Traces a block of every texel's rays, cell by cell of the hemisphere.
+    fn trace(&self, room: &mut Room, side: usize, first: u32, cells: usize) {
+        let Room { walk, texels, guesses, queries, .. } = room;
+        let guesses = &mut guesses[side];
+        for cell in 0..cells {
+            queries.clear();
+            let mut asking = [0; TOGETHER];
+            for (index, texel) in texels.iter().enumerate().filter(|(_, texel)| !texel.seats.is_empty()) {
+                let draw: &Draw = &self.draws.of(texel.seed)[first as usize + cell];
+                let seat = &texel.seats[(draw.pick * texel.seats.len() as f32) as usize];
+                let direction = seat.frame.direction(draw);
+                if direction.dot(seat.plane) > 0.0 {
+                    asking[queries.len()] = index;
+                    queries.push(ShadowQuery { origin_m: seat.origin_m, direction, triangle: seat.triangle });
+                }
+            }
+            let place = cell * guesses.len() / cells;
+            let hidden = self.hidden(walk, queries, &mut guesses[place]);
+            for ((query, &texel), hidden) in queries.iter().zip(&asking).zip(hidden) {
+                texels[texel].tally.add(query.direction, 1.0 - hidden, &self.settings);
+            }
+        }
+    }
+
+    /// The shares of rays that are hidden.
+    #[inline]
+    fn hidden(&self, walk: &mut ScatterRoom, rays: &[ShadowQuery], guess: &mut Option<Occluder>) -> [f64; PACKET] {
+        let mut hidden = [0.0; PACKET];
+        match self.settings.distance_m {
+            None => {
+                let stopped = self.scatter.occluded(walk, rays, guess);
+                (0..rays.len()).for_each(|ray| hidden[ray] = f64::from(stopped >> ray & 1));
+            }
+            Some(reach_m) => {
+                for (ray, hidden) in rays.iter().zip(&mut hidden) {
+                    let hit = self.scatter.nearest(walk, ray.origin_m, ray.direction, reach_m);
+                    *hidden = hit.map_or(0.0, |hit| hidden_share(hit.distance_m, reach_m));
+                }
+            }
+        }
+        hidden
+    }
+
+    fn estimate(&self, tally: &Tally) -> Estimate {
+        let count = f64::from(tally.count.max(1));
+        Estimate {
+            open: (tally.free / count) as f32,
+            bent: (tally.bent / tally.free.max(1e-9)).as_vec3(),
+            sky: tally.sky.map(|sum| (sum / count) as f32),
+        }
+    }
+}
+
+impl Tally {
+    #[inline]
+    fn add(&mut self, direction: DVec3, free: f64, settings: &AmbientSettings) {
+        self.count += 1;
+        if free > 0.0 {
+            self.free += free;
+            if settings.wants_bent {
+                self.bent += direction * free;
+            }
+            if settings.wants_sky {
+                let values = harmonics::basis(direction);
+                self.sky.iter_mut().zip(values).for_each(|(sum, value)| *sum += free * value);
+            }
+        }
+    }
+}
+
+/// Whether the error of the texels' means is small enough, by how far the halves of their rays are apart. Notes the sums
+/// that will be the first half.
+fn is_within(room: &mut Room, traced: u32, error: f64) -> bool {
+    let asked = room.texels.iter().filter(|texel| !texel.seats.is_empty());
+    let squares = asked.map(|texel| {
+        let (free, count) = texel.half;
+        let first = free / f64::from(count.max(1));
+        let second = (texel.tally.free - free) / f64::from((texel.tally.count - count).max(1));
+        (0.5 * (first - second)).powi(2)
+    });
+    let (sum, count) = squares.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
+    for texel in &mut room.texels {
+        texel.half = (texel.tally.free, texel.tally.count);
+    }
+    traced > LEAST_RAYS && CONFIDENCE * (sum / f64::from(count.max(1))).sqrt() <= error
+}

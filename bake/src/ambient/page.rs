@@ -1,0 +1,131 @@
+//! A page of ambient light: one plane of numbers for each quantity, from estimates to codes.
+
+use super::estimate::{Estimate, Estimates};
+use super::settle::Settling;
+use super::{AmbientSettings, harmonics};
+use crate::atlas::{GutterTexel, PageSamples, PageSize};
+use crate::maps::{AmbientMaps, AmbientSide, encode_open, encode_signed};
+
+/// Numbers of a page, in row order.
+pub type Plane = Vec<f32>;
+
+/// Ambient light of a page, as planes of numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AmbientPage {
+    /// Its size.
+    pub size: PageSize,
+    /// What fronts see.
+    pub front: Side,
+    /// What backs see, where some texel has two sides; single-sided texels hold their front's.
+    pub back: Option<Side>,
+}
+
+/// One side of a page. Planes that were not asked for are empty lists.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Side {
+    /// Openness.
+    pub open: Plane,
+    /// Bent normals: x, y, z.
+    pub bent: Vec<Plane>,
+    /// Sky visibility: nine coefficients.
+    pub sky: Vec<Plane>,
+}
+
+impl Side {
+    fn new(texel_count: usize, settings: &AmbientSettings) -> Self {
+        let planes = |is_wanted: bool, count: usize| vec![vec![0.0; texel_count]; if is_wanted { count } else { 0 }];
+        Self {
+            open: vec![0.0; texel_count],
+            bent: planes(settings.wants_bent, 3),
+            sky: planes(settings.wants_sky, harmonics::COUNT),
+        }
+    }
+
+    fn set(&mut self, texel: usize, estimate: &Estimate) {
+        self.open[texel] = estimate.open;
+        self.bent.iter_mut().zip(estimate.bent.to_array()).for_each(|(plane, value)| plane[texel] = value);
+        self.sky.iter_mut().zip(estimate.sky).for_each(|(plane, value)| plane[texel] = value);
+    }
+
+    fn copy(&mut self, texel: usize, source: usize) {
+        self.planes_mut().for_each(|plane| plane[texel] = plane[source]);
+    }
+
+    /// Every plane.
+    pub fn planes_mut(&mut self) -> impl Iterator<Item = &mut Plane> {
+        std::iter::once(&mut self.open).chain(&mut self.bent).chain(&mut self.sky)
+    }
+
+    fn encoded(&self) -> AmbientSide {
+        fn codes<const N: usize>(planes: &[Plane]) -> Option<Vec<[u16; N]>> {
+            let count = planes.first()?.len();
+            Some((0..count).map(|texel| std::array::from_fn(|k| encode_signed(planes[k][texel]))).collect())
+        }
+        AmbientSide {
+            open: self.open.iter().map(|&open| encode_open(open)).collect(),
+            bent: codes(&self.bent),
+            sky: codes(&self.sky),
+        }
+    }
+}
+
+impl AmbientPage {
+    /// Lays out estimates, which are in the given order of samples, and settles what buried texels show.
+    pub fn new(
+        size: PageSize,
+        samples: &PageSamples,
+        order: &[u32],
+        runs: &[Estimates],
+        settings: &AmbientSettings,
+    ) -> Self {
+        let texel_count = size.texel_count();
+        let mut front = Side::new(texel_count, settings);
+        let texel_at = |place: usize| samples.samples[order[place] as usize].texel as usize;
+        let mut settling = Settling::new(size);
+        let mut start = 0;
+        for run in runs {
+            for (k, (estimate, &is_buried)) in run.front.iter().zip(&run.buried).enumerate() {
+                settling.add(texel_at(start + k), is_buried);
+                if !is_buried {
+                    front.set(texel_at(start + k), estimate);
+                }
+            }
+            start += run.front.len();
+        }
+        let mut back = runs.iter().any(|run| !run.back.is_empty()).then(|| front.clone());
+        if let Some(back) = &mut back {
+            let mut start = 0;
+            for run in runs {
+                for (k, estimate) in run.back.iter().filter(|(k, _)| !run.buried[*k as usize]) {
+                    back.set(texel_at(start + *k as usize), estimate);
+                }
+                start += run.front.len();
+            }
+        }
+        for side in std::iter::once(&mut front).chain(&mut back) {
+            for (texel, source) in settling.shown_as(&side.open) {
+                side.copy(texel, source);
+            }
+        }
+        Self { size, front, back }
+    }
+
+    /// Gives texels around charts the values of their sources.
+    pub fn fill(&mut self, gutter: &[GutterTexel], samples: &PageSamples) {
+        for side in self.sides_mut() {
+            for copy in gutter {
+                side.copy(copy.texel as usize, samples.samples[copy.sample as usize].texel as usize);
+            }
+        }
+    }
+
+    /// Both sides, or the one.
+    pub fn sides_mut(&mut self) -> impl Iterator<Item = &mut Side> {
+        std::iter::once(&mut self.front).chain(&mut self.back)
+    }
+
+    /// The page as it is stored.
+    pub fn encoded(&self) -> AmbientMaps {
+        AmbientMaps { front: self.front.encoded(), back: self.back.as_ref().map(Side::encoded) }
+    }
+}

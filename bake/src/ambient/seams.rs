@@ -1,0 +1,296 @@
+//! Seams: where a surface was cut into charts, both sides of the cut should show the same.
+//!
+//! Theory. Along a cut the two charts' texels lie on different grids, so that filtered values differ from side to side, by
+//! the texels' own noise and by the gutter, which only repeats. Texels near cuts are therefore moved as little as makes the
+//! filtered values agree: of all x, the one with the least `sum over points of (A x - B x)^2 + sum of weight (x - x0)^2`, where A
+//! and B filter the two sides. Based on: Iwanicki, "Lighting technology of The Last of Us", *SIGGRAPH Talks* 2013.
+//!
+//! Practice. A cut counts where the two sides are one surface: same ends, same shading normals there. Points lie half a texel
+//! apart. Gutter texels are free to move, texels that stand for a surface much less. Solved by conjugate gradients on
+//! the normal equations (Shewchuk, "An introduction to the conjugate gradient method without the agonizing pain", 1994).
+
+use super::page::Plane;
+use crate::atlas::{Atlas, PageSamples, PageSize};
+use crate::scene::{Geometry, Scene, ShadingNormals};
+use glam::{DVec2, DVec3, Vec3};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Cosine of the angle by which shading normals of one surface may differ: two and a half degrees.
+const SAME_NORMAL: f64 = 0.999;
+/// Distance in texels below which two places on a page are one.
+const SAME_PLACE_TEXELS: f64 = 1e-3;
+/// How strongly a texel that stands for a surface holds on to its value, and one of the gutter.
+const HOLD: [f64; 2] = [0.05, 0.0005];
+/// Most points along an edge.
+const MOST_POINTS: f64 = 4096.0;
+const ITERATIONS: usize = 60;
+
+/// Texels and weights of a filter of two by two.
+type Footprint = [(u32, f64); 4];
+
+/// The cuts of a page.
+pub struct Seams {
+    /// For each point, eight texels (indices in `texels`): those of one side with their weights, those of the other with
+    /// theirs negated.
+    points: Vec<[(u32, f64); 8]>,
+    /// For each texel, the points that it is part of, by `first`.
+    of_texel: Vec<(u32, f64)>,
+    first: Vec<u32>,
+    /// Indices on the page.
+    texels: Vec<u32>,
+    hold: Vec<f64>,
+}
+
+/// How far filtered values of the two sides of cuts are apart.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Mismatch {
+    /// Points that were looked at.
+    pub points: u64,
+    /// Over all of them.
+    pub mean: f64,
+    /// 99 in 100 are no farther apart.
+    pub p99: f64,
+    /// The worst.
+    pub worst: f64,
+}
+
+/// An edge of a triangle, from the end with the lesser coordinates to the other.
+struct Edge {
+    ends: [DVec2; 2],
+    normals: [DVec3; 2],
+}
+
+impl Seams {
+    /// Finds the cuts of a page.
+    pub fn find(
+        scene: &Scene,
+        geometry: &Geometry,
+        normals: &ShadingNormals,
+        atlas: &Atlas,
+        page: u32,
+        samples: &PageSamples,
+    ) -> Self {
+        let size = atlas.pages[page as usize];
+        let mut points = Vec::new();
+        for edges in edges_by_place(scene, geometry, normals, atlas, page).values() {
+            for (k, one) in edges.iter().enumerate() {
+                let others = edges[k + 1..].iter().filter(|other| is_cut(one, other));
+                others.for_each(|other| points.extend(along(one, other, size)));
+            }
+        }
+        // Maps have no order of their own, and sums depend on it.
+        points.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        points.dedup();
+        Self::of_points(points, size, samples)
+    }
+
+    fn of_points(mut points: Vec<[(u32, f64); 8]>, size: PageSize, samples: &PageSamples) -> Self {
+        let mut texels: Vec<u32> = points.iter().flatten().map(|&(texel, _)| texel).collect();
+        texels.sort_unstable();
+        texels.dedup();
+        let mut index = vec![u32::MAX; size.texel_count()];
+        texels.iter().enumerate().for_each(|(i, &texel)| index[texel as usize] = i as u32);
+        points.iter_mut().flatten().for_each(|(texel, _)| *texel = index[*texel as usize]);
+        let mut hold = vec![HOLD[1]; texels.len()];
+        for sample in &samples.samples {
+            if let Some(hold) = hold.get_mut(index[sample.texel as usize] as usize) {
+                *hold = HOLD[0];
+            }
+        }
+        let mut first = vec![0u32; texels.len() + 1];
+        points.iter().flatten().for_each(|&(texel, _)| first[texel as usize + 1] += 1);
+        (0..texels.len()).for_each(|i| first[i + 1] += first[i]);
+        let mut next = first.clone();
+        let mut of_texel = vec![(0, 0.0); 8 * points.len()];
+        for (point, weights) in points.iter().enumerate() {
+            for &(texel, weight) in weights {
+                of_texel[next[texel as usize] as usize] = (point as u32, weight);
+                next[texel as usize] += 1;
+            }
+        }
+        Self { points, of_texel, first, texels, hold }
+    }
+
+    /// How far apart the two sides are on a plane.
+    pub fn mismatch(&self, plane: &Plane) -> Mismatch {
+        let values: Vec<f64> = self.texels.iter().map(|&texel| f64::from(plane[texel as usize])).collect();
+        let mut apart: Vec<f64> = self.differences(&values).into_iter().map(f64::abs).collect();
+        apart.sort_unstable_by(f64::total_cmp);
+        let count = apart.len();
+        let at = |share: f64| {
+            apart.get(((count as f64 * share) as usize).min(count.wrapping_sub(1))).copied().unwrap_or(0.0)
+        };
+        let mean = apart.iter().sum::<f64>() / (count as f64).max(1.0);
+        Mismatch { points: count as u64, mean, p99: at(0.99), worst: at(1.0) }
+    }
+
+    /// Moves texels so that the two sides agree; none out of `range`.
+    pub fn heal(&self, plane: &mut Plane, range: [f32; 2]) {
+        let start: Vec<f64> = self.texels.iter().map(|&texel| f64::from(plane[texel as usize])).collect();
+        for (&texel, value) in self.texels.iter().zip(self.solved(&start)) {
+            plane[texel as usize] = (value as f32).clamp(range[0], range[1]);
+        }
+    }
+
+    /// Conjugate gradients, preconditioned by the diagonal, for `(D'D + H) x = H x0`.
+    fn solved(&self, start: &[f64]) -> Vec<f64> {
+        let diagonal: Vec<f64> = (0..start.len())
+            .map(|i| self.hold[i] + self.points_of(i).iter().map(|(_, weight)| weight * weight).sum::<f64>())
+            .collect();
+        let mut x = start.to_vec();
+        let mut residual: Vec<f64> = self.gathered(&self.differences(&x)).iter().map(|g| -g).collect();
+        let mut scaled: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
+        let mut along = scaled.clone();
+        let mut energy = dot(&residual, &scaled);
+        let enough = energy * 1e-12;
+        for _ in 0..ITERATIONS {
+            if energy <= enough || energy == 0.0 {
+                break;
+            }
+            let mut image = self.gathered(&self.differences(&along));
+            image.iter_mut().zip(&along).zip(&self.hold).for_each(|((i, a), h)| *i += h * a);
+            let step = energy / dot(&along, &image);
+            x.iter_mut().zip(&along).for_each(|(x, a)| *x += step * a);
+            residual.iter_mut().zip(&image).for_each(|(r, i)| *r -= step * i);
+            scaled.iter_mut().zip(&residual).zip(&diagonal).for_each(|((s, r), d)| *s = r / d);
+            let next = dot(&residual, &scaled);
+            along.iter_mut().zip(&scaled).for_each(|(a, s)| *a = s + next / energy * *a);
+            energy = next;
+        }
+        x
+    }
+
+    fn points_of(&self, texel: usize) -> &[(u32, f64)] {
+        &self.of_texel[self.first[texel] as usize..self.first[texel + 1] as usize]
+    }
+
+    /// One side less the other, at every point.
+    fn differences(&self, values: &[f64]) -> Vec<f64> {
+        let difference = |point: &[(u32, f64); 8]| point.iter().map(|&(texel, w)| w * values[texel as usize]).sum();
+        self.points.par_iter().with_min_len(1024).map(difference).collect()
+    }
+
+    /// For every texel, what its points say, by its weight in each.
+    fn gathered(&self, of_points: &[f64]) -> Vec<f64> {
+        let gather = |texel| self.points_of(texel).iter().map(|&(point, w)| w * of_points[point as usize]).sum();
+        (0..self.texels.len()).into_par_iter().with_min_len(1024).map(gather).collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A place in space, for telling whether two are the same.
+type Place = [u32; 3];
+
+/// Edges of all triangles on a page, by where they are in space.
+fn edges_by_place(
+    scene: &Scene,
+    geometry: &Geometry,
+    normals: &ShadingNormals,
+    atlas: &Atlas,
+    page: u32,
+) -> HashMap<[Place; 2], Vec<Edge>> {
+    let size = atlas.pages[page as usize];
+    let place = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut edges: HashMap<[Place; 2], Vec<Edge>> = HashMap::new();
+    for (instance, placement) in atlas.placements.iter().enumerate().filter(|(_, p)| p.page == page && !p.is_empty()) {
+        let _ = placement;
+        let layout = &atlas.layouts[scene.instances[instance].mesh];
+        let first = geometry.first_triangle[instance] as usize;
+        for (triangle, vertices) in (first..).zip(layout.indices.chunks_exact(3)) {
+            let corners = geometry.triangles[triangle];
+            let texels = [0, 1, 2].map(|k| atlas.texel(instance, layout.uvs[vertices[k] as usize], size));
+            const WEIGHTS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            let facing = WEIGHTS.map(|weights| normals.at(scene, geometry, triangle, weights));
+            for k in 0..3 {
+                let (mut a, mut b) = (k, (k + 1) % 3);
+                if place(corners[b]) < place(corners[a]) {
+                    (a, b) = (b, a);
+                }
+                let edge = Edge { ends: [texels[a], texels[b]], normals: [facing[a], facing[b]] };
+                edges.entry([place(corners[a]), place(corners[b])]).or_default().push(edge);
+            }
+        }
+    }
+    edges
+}
+
+/// Whether two edges at the same place in space are one surface and two places on the page.
+fn is_cut(one: &Edge, other: &Edge) -> bool {
+    let is_apart = one.ends.iter().zip(&other.ends).any(|(a, b)| a.distance(*b) > SAME_PLACE_TEXELS);
+    is_apart && one.normals.iter().zip(&other.normals).all(|(a, b)| a.dot(*b) > SAME_NORMAL)
+}
+
+/// Points along a cut.
+fn along(one: &Edge, other: &Edge, size: PageSize) -> impl Iterator<Item = [(u32, f64); 8]> {
+    let length = |edge: &Edge| edge.ends[0].distance(edge.ends[1]);
+    let steps = (2.0 * length(one).max(length(other))).ceil().clamp(1.0, MOST_POINTS) as u32;
+    let sides = [one.ends, other.ends];
+    (0..=steps).map(move |step| {
+        let share = f64::from(step) / f64::from(steps);
+        let [a, b] = sides.map(|ends| footprint(ends[0].lerp(ends[1], share), size));
+        std::array::from_fn(|k| if k < 4 { a[k] } else { (b[k - 4].0, -b[k - 4].1) })
+    })
+}
+
+/// What a filter reads at a place on the page, in texels: as `playback` and any GPU does.
+fn footprint(place: DVec2, size: PageSize) -> Footprint {
+    let last = DVec2::new(f64::from(size.width - 1), f64::from(size.height - 1));
+    let low = (place - 0.5).floor();
+    let weight = place - 0.5 - low;
+    let texel = |x: f64, y: f64| {
+        let (x, y) = (x.clamp(0.0, last.x), y.clamp(0.0, last.y));
+        y as u32 * size.width + x as u32
+    };
+    [
+        (texel(low.x, low.y), (1.0 - weight.x) * (1.0 - weight.y)),
+        (texel(low.x + 1.0, low.y), weight.x * (1.0 - weight.y)),
+        (texel(low.x, low.y + 1.0), (1.0 - weight.x) * weight.y),
+        (texel(low.x + 1.0, low.y + 1.0), weight.x * weight.y),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cut between two rows of texels that differ by a step, with a gutter row beside each.
+    fn seams() -> (Seams, PageSize) {
+        let size = PageSize { width: 16, height: 12 };
+        let normals = [DVec3::Y; 2];
+        let one = Edge { ends: [DVec2::new(2.0, 3.0), DVec2::new(14.0, 3.0)], normals };
+        let other = Edge { ends: [DVec2::new(3.0, 8.3), DVec2::new(13.0, 8.3)], normals };
+        assert!(is_cut(&one, &other) && !is_cut(&one, &one));
+        let covered = (0..16).flat_map(|x| [2 * 16 + x, 8 * 16 + x]).collect::<std::collections::BTreeSet<u32>>();
+        let sample = |texel| crate::atlas::Sample { texel, triangle: 0, barycentric: [0.0; 2] };
+        let samples = PageSamples { samples: covered.into_iter().map(sample).collect() };
+        (Seams::of_points(along(&one, &other, size).collect(), size, &samples), size)
+    }
+
+    #[test]
+    fn healed_sides_agree_and_texels_with_a_surface_hardly_move() {
+        let (seams, size) = seams();
+        let mut plane: Plane =
+            (0..size.texel_count()).map(|i| if i / 16 < 6 { 0.6 } else { 0.5 } + (i % 3) as f32 * 0.02).collect();
+        let before = plane.clone();
+        assert!(seams.mismatch(&plane).worst > 0.08);
+        seams.heal(&mut plane, [0.0, 1.0]);
+        let after = seams.mismatch(&plane);
+        assert!(after.worst < 0.01 && after.mean < 0.003, "{after:?}");
+        let moved =
+            |row: usize| (0..16).map(|x| (plane[row * 16 + x] - before[row * 16 + x]).abs()).fold(0.0, f32::max);
+        assert!(moved(2) < 0.06 && moved(8) < 0.06, "{} {}", moved(2), moved(8));
+        assert_eq!((moved(0), moved(5), moved(11)), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_page_that_agrees_is_left_alone() {
+        let (seams, size) = seams();
+        let mut plane: Plane = vec![0.4; size.texel_count()];
+        seams.heal(&mut plane, [0.0, 1.0]);
+        assert!(plane.iter().all(|&x| (x - 0.4).abs() < 1e-6));
+    }
+}

@@ -1,0 +1,149 @@
+//! Ambient light of a bake's pages.
+
+use super::pages::PageBaker;
+use super::{BakeError, check_cancelled, timed};
+use crate::ambient::{AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, find_ambient};
+use crate::atlas::{self, PageSamples, Sample};
+use crate::disk::manifest::{AmbientEntry, SeamEntry};
+use crate::progress::Stage;
+use crate::scene::ShadingNormals;
+use crate::settings::AmbientRequest;
+
+/// What ambient light is baked with.
+#[derive(Clone, Copy)]
+pub(super) struct Sky<'a> {
+    pub engine: &'a AmbientEngine<'a>,
+    pub request: &'a AmbientRequest,
+    pub normals: &'a ShadingNormals,
+}
+
+/// What came of it so far, over all pages.
+#[derive(Debug, Default)]
+pub(super) struct SkyAccount {
+    pub rays: u64,
+    pub buried_texels: u64,
+    pub seams: Vec<Mismatch>,
+}
+
+impl PageBaker<'_> {
+    /// Bakes how much of the sky the texels of a page see, if that is asked for.
+    pub(super) fn bake_ambient(
+        &mut self,
+        page: usize,
+        samples: &PageSamples,
+        order: &[u32],
+    ) -> Result<Option<AmbientPage>, BakeError> {
+        let Some(sky) = self.sky else { return Ok(None) };
+        self.progress.start(Stage::Ambient, samples.samples.len() as u64);
+        let mut seconds = 0.0;
+        let baked = timed(&mut seconds, || self.bake_sky(&sky, page, samples, order));
+        self.stats.seconds.ambient += seconds;
+        baked.map(Some)
+    }
+
+    fn bake_sky(
+        &mut self,
+        sky: &Sky,
+        page: usize,
+        samples: &PageSamples,
+        order: &[u32],
+    ) -> Result<AmbientPage, BakeError> {
+        let (scene, geometry, atlas, progress) = (self.scene, self.geometry, self.atlas, self.progress);
+        let size = atlas.pages[page];
+        let finer = FinerSamples::new(self, page, samples, sky.request.supersample);
+        let point = |sample: &Sample| {
+            let weights = sample.barycentric.map(f64::from);
+            let shading_normal = sky.normals.at(scene, geometry, sample.triangle as usize, weights);
+            AmbientPoint { surface: atlas::surface_point(scene, geometry, sample), shading_normal }
+        };
+        let texel = |place: usize, points: &mut Vec<AmbientPoint>| {
+            points.extend(finer.of(order[place] as usize, samples).iter().map(point));
+        };
+        let runs = find_ambient(sky.engine, order.len(), texel, |count| {
+            progress.advance(count as u64);
+            !progress.is_cancelled()
+        })
+        .ok_or(BakeError::Cancelled)?;
+        let account = &mut self.sky_account;
+        account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
+        account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
+        let mut baked = AmbientPage::new(size, samples, order, &runs, sky.engine.settings());
+        drop(runs);
+        baked.fill(&atlas::gutter(size, samples, self.settings.padding_texels), samples);
+        let seams = Seams::find(scene, geometry, sky.normals, atlas, page as u32, samples);
+        check_cancelled(progress)?;
+        for side in baked.sides_mut() {
+            seams.heal(&mut side.open, [0.0, 1.0]);
+            side.bent.iter_mut().chain(&mut side.sky).for_each(|plane| seams.heal(plane, [-1.0, 1.0]));
+        }
+        self.sky_account.seams.push(seams.mismatch(&baked.front.open));
+        Ok(baked)
+    }
+}
+
+/// For each texel of a page, the points that stand for it.
+struct FinerSamples {
+    /// Samples of a finer grid, texel by texel of the page.
+    samples: Vec<Sample>,
+    /// For each of the page's samples, where its points begin. Empty: each stands for itself.
+    first: Vec<u32>,
+}
+
+impl FinerSamples {
+    fn new(baker: &PageBaker, page: usize, coarse: &PageSamples, finer: u32) -> Self {
+        if finer < 2 {
+            return Self { samples: Vec::new(), first: Vec::new() };
+        }
+        let width = baker.atlas.pages[page].width;
+        let mut samples = atlas::sample_finer(baker.scene, baker.geometry, baker.atlas, page as u32, finer).samples;
+        let texel_of = |sample: &Sample| {
+            let (x, y) = (sample.texel % (width * finer), sample.texel / (width * finer));
+            y / finer * width + x / finer
+        };
+        samples.sort_by_key(texel_of);
+        let mut rest = samples.as_slice();
+        let mut found = Self { samples: Vec::with_capacity(samples.len()), first: vec![0] };
+        for sample in &coarse.samples {
+            rest = &rest[rest.partition_point(|finer| texel_of(finer) < sample.texel)..];
+            let (of_texel, others) = rest.split_at(rest.partition_point(|finer| texel_of(finer) == sample.texel));
+            found.samples.extend_from_slice(of_texel);
+            found.first.push(found.samples.len() as u32);
+            rest = others;
+        }
+        found
+    }
+
+    /// The points of a texel: its own where the finer grid has none.
+    fn of<'a>(&'a self, index: usize, coarse: &'a PageSamples) -> &'a [Sample] {
+        let finer = match self.first.get(index..index + 2) {
+            Some(&[start, end]) => &self.samples[start as usize..end as usize],
+            _ => &[],
+        };
+        if finer.is_empty() { std::slice::from_ref(&coarse.samples[index]) } else { finer }
+    }
+}
+
+/// What the manifest says of it.
+pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEntry {
+    let points: u64 = account.seams.iter().map(|seams| seams.points).sum();
+    let by_points = |of: fn(&Mismatch) -> f64| {
+        account.seams.iter().map(|seams| of(seams) * seams.points as f64).sum::<f64>() / (points as f64).max(1.0)
+    };
+    let largest = |of: fn(&Mismatch) -> f64| account.seams.iter().map(of).fold(0.0, f64::max);
+    AmbientEntry {
+        rays: request.estimate.rays,
+        error: request.estimate.error,
+        distance_m: request.estimate.distance_m,
+        supersample: request.supersample,
+        bits: request.bits.count(),
+        rays_traced: account.rays,
+        buried_texels: account.buried_texels,
+        seams: SeamEntry {
+            points,
+            mean: by_points(|seams| seams.mean),
+            p99: largest(|seams| seams.p99),
+            worst: largest(|seams| seams.worst),
+        },
+        vertices: None,
+    }
+}

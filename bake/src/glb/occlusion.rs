@@ -1,0 +1,92 @@
+//! Ambient occlusion where every viewer looks: `occlusionTexture`, on page coordinates in `TEXCOORD_1`.
+//!
+//! A layout is shared by all instances of a mesh, but a standard texture knows of no rectangles. So each instance gets
+//! coordinates of its own, the page's; positions, normals and indices stay shared.
+
+use super::binary::Binary;
+use super::materials::{Written, index_of};
+use crate::atlas::{Atlas, PageSize};
+use crate::disk::{in_8_bits, mean};
+use crate::maps::AmbientMaps;
+use crate::scene::Scene;
+use glam::Vec2;
+use serde_json::json;
+
+/// A page's occlusion texture, as viewers read it: 8 bits, and the mean of both sides where there are two.
+#[derive(Debug, Clone)]
+pub struct OcclusionPage {
+    png: Vec<u8>,
+}
+
+impl OcclusionPage {
+    /// From a page of ambient light.
+    pub fn new(size: PageSize, maps: &AmbientMaps) -> Self {
+        let front = &maps.front.open;
+        let grey: Vec<u8> = match &maps.back {
+            None => front.iter().map(|&code| in_8_bits(code)).collect(),
+            Some(back) => front.iter().zip(&back.open).map(|(&f, &b)| in_8_bits(mean(f, b))).collect(),
+        };
+        let mut png = Vec::new();
+        let mut encoder = png::Encoder::new(&mut png, size.width, size.height);
+        encoder.set_color(png::ColorType::Grayscale);
+        let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&grey));
+        written.expect("a vector takes as many texels as the size says");
+        Self { png }
+    }
+}
+
+/// Occlusion of a scene's instances.
+#[derive(Debug, Clone, Copy)]
+pub struct Occlusion<'a> {
+    /// Where their texels lie.
+    pub atlas: &'a Atlas,
+    /// Textures, one a page.
+    pub pages: &'a [OcclusionPage],
+}
+
+impl Occlusion<'_> {
+    /// Coordinates of an instance's layout on its page.
+    pub(super) fn page_uvs(&self, scene: &Scene, instance: usize) -> Vec<Vec2> {
+        let placement = &self.atlas.placements[instance];
+        let layout = &self.atlas.layouts[scene.instances[instance].mesh];
+        layout.uvs.iter().map(|&uv| uv * placement.scale + placement.offset).collect()
+    }
+
+    /// The page of an instance, if it has texels.
+    pub(super) fn page(&self, instance: usize) -> Option<usize> {
+        let placement = &self.atlas.placements[instance];
+        (!placement.is_empty()).then_some(placement.page as usize)
+    }
+
+    /// Adds each page's texture to the materials of what lies on it; a material on several pages becomes several. Gives the
+    /// material of every instance.
+    pub(super) fn add_to(&self, scene: &Scene, written: &mut Written, binary: &mut Binary) -> Vec<usize> {
+        // No smaller levels: they would blend charts that lie side by side.
+        let sampler = json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 });
+        let sampler = index_of(&mut written.samplers, sampler);
+        let mut add_page = |page: &OcclusionPage| {
+            let view = binary.add_view(page.png.iter().copied());
+            written.images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
+            written.textures.push(json!({ "source": written.images.len() - 1, "sampler": sampler }));
+            written.textures.len() - 1
+        };
+        let textures: Vec<usize> = self.pages.iter().map(&mut add_page).collect();
+        let mut known: Vec<(usize, usize, usize)> = Vec::new();
+        let mut material = |instance: usize| {
+            let material = scene.meshes[scene.instances[instance].mesh].material;
+            let Some(page) = self.page(instance) else { return material };
+            if let Some(&(_, _, index)) = known.iter().find(|&&(m, p, _)| (m, p) == (material, page)) {
+                return index;
+            }
+            let is_first = known.iter().all(|&(m, _, _)| m != material);
+            let index = if is_first { material } else { written.materials.len() };
+            if !is_first {
+                written.materials.push(written.materials[material].clone());
+            }
+            written.materials[index]["occlusionTexture"] = json!({ "index": textures[page], "texCoord": 1 });
+            known.push((material, page, index));
+            index
+        };
+        (0..scene.instances.len()).map(&mut material).collect()
+    }
+}

@@ -1,0 +1,60 @@
+//! Ambient light as it is stored.
+//!
+//! Openness is a code of 16 bits, 0 closed and 65535 open. Numbers between -1 and 1 (bent normals, sky coefficients) are codes
+//! with zero in the middle: q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
+
+/// Ambient light of a page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AmbientMaps {
+    /// What fronts see.
+    pub front: AmbientSide,
+    /// What backs see, where some texel of the page has two sides; single-sided texels hold their front's.
+    pub back: Option<AmbientSide>,
+}
+
+/// Ambient light of one side of a page's surfaces: row order, one entry a texel.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct AmbientSide {
+    /// Openness.
+    pub open: Vec<u16>,
+    /// Bent normals, world space, if the set has them.
+    pub bent: Option<Vec<[u16; 3]>>,
+    /// Sky visibility in spherical harmonics ([`crate::ambient::harmonics`]), if the set has it.
+    pub sky: Option<Vec<[u16; 9]>>,
+}
+
+/// The code of an openness.
+pub fn encode_open(open: f32) -> u16 {
+    (open.clamp(0.0, 1.0) * 65_535.0).round() as u16
+}
+
+/// The openness that a code means.
+pub fn decode_open(code: u16) -> f32 {
+    f32::from(code) / 65_535.0
+}
+
+/// The code of a number between -1 and 1.
+pub fn encode_signed(x: f32) -> u16 {
+    ((x.clamp(-1.0, 1.0) * 32_767.0).round() as i32 + 32_768) as u16
+}
+
+/// The number between -1 and 1 that a code means.
+pub fn decode_signed(code: u16) -> f32 {
+    (f32::from(code) - 32_768.0) / 32_767.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_survive_to_half_a_code() {
+        for i in -1000..=1000 {
+            let x = i as f32 / 1000.0;
+            assert!((decode_signed(encode_signed(x)) - x).abs() <= 0.5 / 32_767.0 + 1e-7);
+            assert!((decode_open(encode_open(x.abs())) - x.abs()).abs() <= 0.5 / 65_535.0 + 1e-7);
+        }
+        assert_eq!([-1.0, 0.0, 1.0].map(|x| decode_signed(encode_signed(x))), [-1.0, 0.0, 1.0]);
+        assert_eq!([f32::NAN, 2.0].map(encode_open), [0, 65_535]);
+    }
+}
