@@ -49,7 +49,7 @@ fn plain_layout(mesh: &Mesh) -> Layout {
 
 fn rewrite(scene: &Scene, name: &str) -> Scene {
     let layouts: Vec<Layout> = scene.meshes.iter().map(plain_layout).collect();
-    let written = write_glb(scene, &layouts).expect("small");
+    let written = write_glb(scene, &layouts, None).expect("small");
     let folder = tempfile::tempdir().expect("folder");
     let kept = std::env::var_os("SUNBAKE_KEEP_GLB").map(PathBuf::from);
     let path = kept.as_deref().unwrap_or(folder.path()).join(format!("{name}.glb"));

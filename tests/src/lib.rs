@@ -1,6 +1,7 @@
 //! What the hard-case tests share: scenes by code, points on them, suns, and oracles that are not the code under test.
 
 mod agreement;
+pub mod ambient;
 pub mod engines;
 mod oracle;
 pub mod paths;
@@ -134,7 +135,7 @@ pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
 pub fn write_scene(scene: &Scene, folder: &Path, name: &str) -> PathBuf {
     let layouts: Vec<Layout> = scene.meshes.iter().map(layout_without_coordinates).collect();
     let file = folder.join(format!("{name}.glb"));
-    let written = sunbake::glb::write_glb(scene, &layouts).expect("a small scene");
+    let written = sunbake::glb::write_glb(scene, &layouts, None).expect("a small scene");
     std::fs::write(&file, written.bytes).expect("a folder to write in");
     file
 }

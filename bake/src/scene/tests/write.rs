@@ -24,7 +24,7 @@ fn split(scene: &Scene) -> Vec<Layout> {
 }
 
 fn rewrite(scene: &Scene) -> (WrittenScene, Scene) {
-    let written = write_glb(scene, &split(scene)).expect("small");
+    let written = write_glb(scene, &split(scene), None).expect("small");
     let again = load_bytes("scene.glb", &written.bytes).unwrap_or_else(|error| panic!("{error}"));
     (written, again)
 }
