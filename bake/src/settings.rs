@@ -178,7 +178,7 @@ impl BakeSettings {
         }
     }
 
-    /// Good for a game level: one page of 2048, 16 bits, 256 rays of sky.
+    /// Good for a game level: one page of 2048, 16 bits, 128 rays of sky.
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
@@ -191,7 +191,7 @@ impl BakeSettings {
             layer_cap: 4,
             lane_count: 1,
             bakes_intervals: true,
-            ambient: Some(AmbientRequest::with_rays(256)),
+            ambient: Some(AmbientRequest::with_rays(128)),
             engine: EngineChoice::Exact,
             loss_map: false,
             edge_seconds: 1.0,
@@ -200,9 +200,9 @@ impl BakeSettings {
         }
     }
 
-    /// To keep: one page of 4096, 16 bits, as many layers as anything needs, 1024 rays of sky.
+    /// To keep: one page of 4096, 16 bits, as many layers as anything needs, 512 rays of sky.
     pub fn last(sun: SunRequest) -> Self {
-        let ambient = Some(AmbientRequest::with_rays(1024));
+        let ambient = Some(AmbientRequest::with_rays(512));
         Self { page_size_texels: 4096, layer_cap: 8, ambient, max_memory_bytes: 16 << 30, ..Self::standard(sun) }
     }
 }

@@ -82,6 +82,11 @@ impl<'a> AmbientEngine<'a> {
         Self { tracer, scatter: Scatter::new(tracer), burial, settings, blocks, draws }
     }
 
+    /// Whether a point lies inside a solid.
+    pub fn is_point_buried(&self, room: &mut ScatterRoom, point: &AmbientPoint) -> bool {
+        self.burial.is_buried(&self.scatter, room, point, &mut 0)
+    }
+
     /// The settings.
     pub fn settings(&self) -> &AmbientSettings {
         &self.settings

@@ -31,11 +31,13 @@ pub mod harmonics;
 mod page;
 mod seams;
 mod settle;
+mod vertices;
 
 pub use estimate::{AmbientEngine, AmbientPoint, Estimate, find_ambient};
 pub use harmonics::Coefficients;
 pub use page::{AmbientPage, Plane, Side};
 pub use seams::{Mismatch, Seams};
+pub use vertices::openness_of_vertices;
 
 /// What is asked of ambient light, and what it may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -18,6 +18,11 @@ use std::collections::HashMap;
 
 /// Cosine of the angle by which shading normals of one surface may differ: two and a half degrees.
 const SAME_NORMAL: f64 = 0.999;
+/// Cosine of the angle that the triangles themselves may differ by: forty-five degrees. What is bent more is a wire or a
+/// bar of four or five sides, whose planes hide different halves of the world however smooth its normals.
+const SAME_PLANE: f64 = 0.7;
+/// Sides that are farther apart than this are taken to differ in truth, as where another surface ends just at the cut.
+const MOST_APART: f64 = 0.25;
 /// Distance in texels below which two places on a page are one.
 const SAME_PLACE_TEXELS: f64 = 1e-3;
 /// How strongly a texel that stands for a surface holds on to its value, and one of the gutter.
@@ -47,7 +52,9 @@ pub struct Seams {
 pub struct Mismatch {
     /// Points that were looked at.
     pub points: u64,
-    /// Over all of them.
+    /// Of these, those whose sides are taken to differ in truth: they are left alone, and do not count below.
+    pub differing: u64,
+    /// Over all that count.
     pub mean: f64,
     /// 99 in 100 are no farther apart.
     pub p99: f64,
@@ -59,6 +66,8 @@ pub struct Mismatch {
 struct Edge {
     ends: [DVec2; 2],
     normals: [DVec3; 2],
+    /// Of the triangle itself.
+    plane: DVec3,
 }
 
 impl Seams {
@@ -112,34 +121,51 @@ impl Seams {
         Self { points, of_texel, first, texels, hold }
     }
 
-    /// How far apart the two sides are on a plane.
-    pub fn mismatch(&self, plane: &Plane) -> Mismatch {
-        let values: Vec<f64> = self.texels.iter().map(|&texel| f64::from(plane[texel as usize])).collect();
-        let mut apart: Vec<f64> = self.differences(&values).into_iter().map(f64::abs).collect();
+    /// Which points of a plane count, 1 or 0: not those whose sides differ in truth.
+    fn weights(&self, plane: &Plane) -> Vec<f64> {
+        let apart = self.differences(&self.values(plane));
+        apart.iter().map(|apart| f64::from(u8::from(apart.abs() <= MOST_APART))).collect()
+    }
+
+    fn values(&self, plane: &Plane) -> Vec<f64> {
+        self.texels.iter().map(|&texel| f64::from(plane[texel as usize])).collect()
+    }
+
+    fn mismatch(&self, plane: &Plane, weights: &[f64]) -> Mismatch {
+        let apart = self.differences(&self.values(plane));
+        let mut apart: Vec<f64> =
+            apart.into_iter().zip(weights).filter(|(_, weight)| **weight > 0.0).map(|(apart, _)| apart.abs()).collect();
         apart.sort_unstable_by(f64::total_cmp);
         let count = apart.len();
         let at = |share: f64| {
             apart.get(((count as f64 * share) as usize).min(count.wrapping_sub(1))).copied().unwrap_or(0.0)
         };
         let mean = apart.iter().sum::<f64>() / (count as f64).max(1.0);
-        Mismatch { points: count as u64, mean, p99: at(0.99), worst: at(1.0) }
+        let points = weights.len() as u64;
+        Mismatch { points, differing: points - count as u64, mean, p99: at(0.99), worst: at(1.0) }
     }
 
-    /// Moves texels so that the two sides agree; none out of `range`.
-    pub fn heal(&self, plane: &mut Plane, range: [f32; 2]) {
-        let start: Vec<f64> = self.texels.iter().map(|&texel| f64::from(plane[texel as usize])).collect();
-        for (&texel, value) in self.texels.iter().zip(self.solved(&start)) {
+    /// Moves texels so that the two sides agree, none out of `range`. Says how far apart they were, and are.
+    pub fn heal(&self, plane: &mut Plane, range: [f32; 2]) -> [Mismatch; 2] {
+        let weights = self.weights(plane);
+        let before = self.mismatch(plane, &weights);
+        for (&texel, value) in self.texels.iter().zip(self.solved(&self.values(plane), &weights)) {
             plane[texel as usize] = (value as f32).clamp(range[0], range[1]);
         }
+        [before, self.mismatch(plane, &weights)]
     }
 
-    /// Conjugate gradients, preconditioned by the diagonal, for `(D'D + H) x = H x0`.
-    fn solved(&self, start: &[f64]) -> Vec<f64> {
-        let diagonal: Vec<f64> = (0..start.len())
-            .map(|i| self.hold[i] + self.points_of(i).iter().map(|(_, weight)| weight * weight).sum::<f64>())
-            .collect();
+    /// Conjugate gradients, preconditioned by the diagonal, for `(D'WD + H) x = H x0`.
+    fn solved(&self, start: &[f64], of_points: &[f64]) -> Vec<f64> {
+        let of_texel = |i: usize| self.points_of(i).iter().map(|&(p, w)| w * w * of_points[p as usize]).sum::<f64>();
+        let diagonal: Vec<f64> = (0..start.len()).map(|i| self.hold[i] + of_texel(i)).collect();
+        let normal = |x: &[f64]| {
+            let mut apart = self.differences(x);
+            apart.iter_mut().zip(of_points).for_each(|(apart, weight)| *apart *= weight);
+            self.gathered(&apart)
+        };
         let mut x = start.to_vec();
-        let mut residual: Vec<f64> = self.gathered(&self.differences(&x)).iter().map(|g| -g).collect();
+        let mut residual: Vec<f64> = normal(&x).iter().map(|g| -g).collect();
         let mut scaled: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
         let mut along = scaled.clone();
         let mut energy = dot(&residual, &scaled);
@@ -148,7 +174,7 @@ impl Seams {
             if energy <= enough || energy == 0.0 {
                 break;
             }
-            let mut image = self.gathered(&self.differences(&along));
+            let mut image = normal(&along);
             image.iter_mut().zip(&along).zip(&self.hold).for_each(|((i, a), h)| *i += h * a);
             let step = energy / dot(&along, &image);
             x.iter_mut().zip(&along).for_each(|(x, a)| *x += step * a);
@@ -204,13 +230,14 @@ fn edges_by_place(
             let corners = geometry.triangles[triangle];
             let texels = [0, 1, 2].map(|k| atlas.texel(instance, layout.uvs[vertices[k] as usize], size));
             const WEIGHTS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            let plane = geometry.normal(triangle);
             let facing = WEIGHTS.map(|weights| normals.at(scene, geometry, triangle, weights));
             for k in 0..3 {
                 let (mut a, mut b) = (k, (k + 1) % 3);
                 if place(corners[b]) < place(corners[a]) {
                     (a, b) = (b, a);
                 }
-                let edge = Edge { ends: [texels[a], texels[b]], normals: [facing[a], facing[b]] };
+                let edge = Edge { ends: [texels[a], texels[b]], normals: [facing[a], facing[b]], plane };
                 edges.entry([place(corners[a]), place(corners[b])]).or_default().push(edge);
             }
         }
@@ -221,7 +248,8 @@ fn edges_by_place(
 /// Whether two edges at the same place in space are one surface and two places on the page.
 fn is_cut(one: &Edge, other: &Edge) -> bool {
     let is_apart = one.ends.iter().zip(&other.ends).any(|(a, b)| a.distance(*b) > SAME_PLACE_TEXELS);
-    is_apart && one.normals.iter().zip(&other.normals).all(|(a, b)| a.dot(*b) > SAME_NORMAL)
+    let is_one_surface = one.normals.iter().zip(&other.normals).all(|(a, b)| a.dot(*b) > SAME_NORMAL);
+    is_apart && is_one_surface && one.plane.dot(other.plane) > SAME_PLANE
 }
 
 /// Points along a cut.
@@ -260,9 +288,9 @@ mod tests {
     /// A cut between two rows of texels that differ by a step, with a gutter row beside each.
     fn seams() -> (Seams, PageSize) {
         let size = PageSize { width: 16, height: 12 };
-        let normals = [DVec3::Y; 2];
-        let one = Edge { ends: [DVec2::new(2.0, 3.0), DVec2::new(14.0, 3.0)], normals };
-        let other = Edge { ends: [DVec2::new(3.0, 8.3), DVec2::new(13.0, 8.3)], normals };
+        let (normals, plane) = ([DVec3::Y; 2], DVec3::Y);
+        let one = Edge { ends: [DVec2::new(2.0, 3.0), DVec2::new(14.0, 3.0)], normals, plane };
+        let other = Edge { ends: [DVec2::new(3.0, 8.3), DVec2::new(13.0, 8.3)], normals, plane };
         assert!(is_cut(&one, &other) && !is_cut(&one, &one));
         let covered = (0..16).flat_map(|x| [2 * 16 + x, 8 * 16 + x]).collect::<std::collections::BTreeSet<u32>>();
         let sample = |texel| crate::atlas::Sample { texel, triangle: 0, barycentric: [0.0; 2] };
@@ -276,9 +304,8 @@ mod tests {
         let mut plane: Plane =
             (0..size.texel_count()).map(|i| if i / 16 < 6 { 0.6 } else { 0.5 } + (i % 3) as f32 * 0.02).collect();
         let before = plane.clone();
-        assert!(seams.mismatch(&plane).worst > 0.08);
-        seams.heal(&mut plane, [0.0, 1.0]);
-        let after = seams.mismatch(&plane);
+        let [earlier, after] = seams.heal(&mut plane, [0.0, 1.0]);
+        assert!(earlier.worst > 0.08 && earlier.differing == 0);
         assert!(after.worst < 0.01 && after.mean < 0.003, "{after:?}");
         let moved =
             |row: usize| (0..16).map(|x| (plane[row * 16 + x] - before[row * 16 + x]).abs()).fold(0.0, f32::max);

@@ -156,7 +156,7 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
 }
 
 pub(super) fn file_layout(scene: &Scene, mesh: usize) -> Layout {
-    let mut layout = Layout::empty(scene, mesh);
+    let mut layout = Layout::of_mesh(&scene.meshes[mesh]);
     layout.origin = LayoutOrigin::File;
     if let Some(uvs) = &scene.meshes[mesh].texcoords[1] {
         layout.uvs.clone_from(uvs);
@@ -209,8 +209,11 @@ fn assemble(scene: &Scene, items: &[Item], plan: &Plan) -> Atlas {
             },
         });
     }
-    let layouts =
-        layouts.into_iter().enumerate().map(|(mesh, l)| l.unwrap_or_else(|| Layout::empty(scene, mesh))).collect();
+    let layouts = layouts
+        .into_iter()
+        .enumerate()
+        .map(|(mesh, l)| l.unwrap_or_else(|| Layout::of_mesh(&scene.meshes[mesh])))
+        .collect();
     let mut atlas = Atlas {
         pages: plan.page_sizes(),
         layouts,

@@ -4,7 +4,6 @@
 //! and `page_uv = layout_uv * scale + offset`. Texel (x, y) of a page of `width` by `height` covers
 //! `[x, x + 1] / width` by `[y, y + 1] / height`; row 0 is v = 0, the top of the PNG and of a wgpu texture.
 
-use crate::scene::Scene;
 use glam::{DVec2, DVec3, Vec2};
 
 mod arrange;
@@ -143,8 +142,7 @@ pub enum LayoutOrigin {
 
 impl Layout {
     /// The mesh as it is, all coordinates zero: for a mesh that has no texels.
-    fn empty(scene: &Scene, mesh: usize) -> Self {
-        let mesh = &scene.meshes[mesh];
+    pub fn of_mesh(mesh: &crate::scene::Mesh) -> Self {
         let count = mesh.positions.len();
         Self {
             origin: LayoutOrigin::Unwrapped,

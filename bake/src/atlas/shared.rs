@@ -34,7 +34,7 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     let whole = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole);
-    let layout = |m: usize| if drawn[m].is_empty() { Layout::empty(scene, m) } else { file_layout(scene, m) };
+    let layout = |m: usize| if drawn[m].is_empty() { Layout::of_mesh(&scene.meshes[m]) } else { file_layout(scene, m) };
     let texels_per_metre = f64::from(side) * (uv2 / metres2).sqrt();
     let layouts = (0..scene.meshes.len()).map(layout).collect();
     let warnings = density_warning(settings, texels_per_metre).into_iter().collect();

@@ -2,9 +2,11 @@
 
 use super::pages::PageBaker;
 use super::{BakeError, check_cancelled, timed};
-use crate::ambient::{AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, find_ambient};
+use crate::ambient::{AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, find_ambient, openness_of_vertices};
 use crate::atlas::{self, PageSamples, Sample};
-use crate::disk::manifest::{AmbientEntry, SeamEntry};
+use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
+use crate::disk::write::{SetWriter, VERTICES_FILE};
+use crate::glb;
 use crate::progress::Stage;
 use crate::scene::ShadingNormals;
 use crate::settings::AmbientRequest;
@@ -22,7 +24,8 @@ pub(super) struct Sky<'a> {
 pub(super) struct SkyAccount {
     pub rays: u64,
     pub buried_texels: u64,
-    pub seams: Vec<Mismatch>,
+    /// Of each page and side, before and after they were healed.
+    pub seams: Vec<[Mismatch; 2]>,
 }
 
 impl PageBaker<'_> {
@@ -39,6 +42,20 @@ impl PageBaker<'_> {
         let baked = timed(&mut seconds, || self.bake_sky(&sky, page, samples, order));
         self.stats.seconds.ambient += seconds;
         baked.map(Some)
+    }
+
+    /// Bakes openness of vertices into a scene of their own, if that is asked for.
+    pub(super) fn bake_vertices(&mut self, writer: &mut SetWriter) -> Result<Option<VertexEntry>, BakeError> {
+        let Some((sky, attribute)) = self.sky.and_then(|sky| Some((sky, sky.request.vertices?))) else {
+            return Ok(None);
+        };
+        let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
+        progress.start(Stage::Ambient, 0);
+        let find = || openness_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
+        let open = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
+        let write = || writer.write_vertices(&glb::write_vertices(scene, attribute, &open)?).map_err(BakeError::from);
+        timed(&mut self.stats.seconds.write, write)?;
+        Ok(Some(VertexEntry { file: VERTICES_FILE.into(), attribute: attribute.name().into() }))
     }
 
     fn bake_sky(
@@ -73,10 +90,11 @@ impl PageBaker<'_> {
         let seams = Seams::find(scene, geometry, sky.normals, atlas, page as u32, samples);
         check_cancelled(progress)?;
         for side in baked.sides_mut() {
-            seams.heal(&mut side.open, [0.0, 1.0]);
-            side.bent.iter_mut().chain(&mut side.sky).for_each(|plane| seams.heal(plane, [-1.0, 1.0]));
+            self.sky_account.seams.push(seams.heal(&mut side.open, [0.0, 1.0]));
+            for plane in side.bent.iter_mut().chain(&mut side.sky) {
+                seams.heal(plane, [-1.0, 1.0]);
+            }
         }
-        self.sky_account.seams.push(seams.mismatch(&baked.front.open));
         Ok(baked)
     }
 }
@@ -125,11 +143,11 @@ impl FinerSamples {
 
 /// What the manifest says of it.
 pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEntry {
-    let points: u64 = account.seams.iter().map(|seams| seams.points).sum();
-    let by_points = |of: fn(&Mismatch) -> f64| {
-        account.seams.iter().map(|seams| of(seams) * seams.points as f64).sum::<f64>() / (points as f64).max(1.0)
-    };
-    let largest = |of: fn(&Mismatch) -> f64| account.seams.iter().map(of).fold(0.0, f64::max);
+    let counted = |seams: &Mismatch| (seams.points - seams.differing) as f64;
+    let all: f64 = account.seams.iter().map(|[_, after]| counted(after)).sum();
+    let mean =
+        |which: usize| account.seams.iter().map(|s| s[which].mean * counted(&s[which])).sum::<f64>() / all.max(1.0);
+    let largest = |of: fn(&Mismatch) -> f64| account.seams.iter().map(|[_, after]| of(after)).fold(0.0, f64::max);
     AmbientEntry {
         rays: request.estimate.rays,
         error: request.estimate.error,
@@ -139,8 +157,10 @@ pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEn
         rays_traced: account.rays,
         buried_texels: account.buried_texels,
         seams: SeamEntry {
-            points,
-            mean: by_points(|seams| seams.mean),
+            points: account.seams.iter().map(|[_, after]| after.points).sum(),
+            differing: account.seams.iter().map(|[_, after]| after.differing).sum(),
+            mean_before: mean(0),
+            mean: mean(1),
             p99: largest(|seams| seams.p99),
             worst: largest(|seams| seams.worst),
         },

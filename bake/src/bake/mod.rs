@@ -236,7 +236,11 @@ fn bake_prepared(
     let written = glb::write_glb(scene, &atlas.layouts, occlusion)?;
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
-    let manifest = finished(pages, prepared, &lights, settings);
+    let vertices = pages.bake_vertices(&mut writer)?;
+    let mut manifest = finished(pages, prepared, &lights, settings);
+    if let Some(ambient) = &mut manifest.ambient {
+        ambient.vertices = vertices;
+    }
     let manifest = Manifest {
         stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,

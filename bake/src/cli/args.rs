@@ -40,9 +40,9 @@ pub enum Command {
 pub enum Preset {
     /// A look in seconds: a page of 512, 8 bits, 64 rays of sky.
     Draft,
-    /// For a game level: a page of 2048, 16 bits, 256 rays of sky.
+    /// For a game level: a page of 2048, 16 bits, 128 rays of sky.
     Standard,
-    /// To keep: a page of 4096, 16 bits, up to 8 layers, 1024 rays of sky.
+    /// To keep: a page of 4096, 16 bits, up to 8 layers, 512 rays of sky.
     Final,
 }
 
@@ -188,9 +188,9 @@ pub struct CostArgs {
 #[derive(Debug, Clone, ClapArgs)]
 #[command(next_help_heading = "Ambient light")]
 pub struct AmbientArgs {
-    /// Rays of sky a texel, a power of two from 4 to 65536. [default: 64, 256 or 1024, by preset]
+    /// Rays of sky a texel, a power of two from 4 to 65536. [default: 64, 128 or 512, by preset]
     ///
-    /// Time grows with the number. The error of ambient occlusion is about 0.02 with 64 rays, 0.008 with 256, 0.003 with 1024.
+    /// Time grows with the number. The error of ambient occlusion is about 0.02 with 64 rays, 0.01 with 128, 0.005 with 512.
     #[arg(long, value_name = "N", value_parser = parse_rays)]
     pub ao_rays: Option<u32>,
     /// Only surfaces nearer than M metres hide the sky. [default: all do]

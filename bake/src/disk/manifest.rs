@@ -168,7 +168,7 @@ pub struct AtlasEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampMapsEntry>,
     /// Ambient occlusion, 0 is occluded: a grey PNG or, where some texel has two sides, an RGB one whose green is what the
-    /// front sees, blue what the back sees, and red, which viewers read, the mean of the two.
+    /// front sees, blue what the back sees, and red, which viewers read, the greater of the two.
     pub ao: Option<String>,
     /// Bent normals of fronts: RGB PNG of 16 bits, a code q meaning `(q - 32768) / 32767`, world space. The length is the
     /// mean's own.
@@ -229,7 +229,11 @@ pub struct AmbientEntry {
 pub struct SeamEntry {
     /// Points looked at.
     pub points: u64,
-    /// Over all of them.
+    /// Of these, those whose sides differ by more than a quarter: taken to be so in truth, left alone, and not counted below.
+    pub differing: u64,
+    /// Mean difference before the texels beside cuts were made to agree.
+    pub mean_before: f64,
+    /// Mean difference as written.
     pub mean: f64,
     /// 99 in 100 are no farther apart; of several pages, the largest.
     pub p99: f64,

@@ -6,4 +6,4 @@ pub mod write;
 mod write_ambient;
 mod write_loss;
 
-pub(crate) use write_ambient::{in_8_bits, mean};
+pub(crate) use write_ambient::in_8_bits;

@@ -14,6 +14,8 @@ use tempfile::TempDir;
 
 /// Name of the scene in a set's folder.
 pub const SCENE_FILE: &str = "scene.glb";
+/// Name of the scene with ambient occlusion at its vertices.
+pub const VERTICES_FILE: &str = "vertices.glb";
 /// How the folder of an unfinished bake is called, after a dot and the target's name.
 const PARTIAL_SUFFIX: &str = ".sunbake-partial";
 
@@ -142,6 +144,11 @@ impl SetWriter {
     /// Writes the scene.
     pub fn write_scene(&mut self, glb: &[u8]) -> Result<(), WriteError> {
         self.write_file(SCENE_FILE, |file| file.write_all(glb))
+    }
+
+    /// Writes the scene with ambient occlusion at its vertices.
+    pub fn write_vertices(&mut self, glb: &[u8]) -> Result<(), WriteError> {
+        self.write_file(VERTICES_FILE, |file| file.write_all(glb))
     }
 
     /// Writes a page's textures and says what the manifest should say of them.

@@ -61,15 +61,10 @@ fn write_occlusion(maps: &AmbientMaps, size: (u32, u32), bits: Bits, file: impl 
     let (color, codes): (_, Vec<u16>) = match &maps.back {
         None => (png::ColorType::Grayscale, front.clone()),
         Some(back) => {
-            (png::ColorType::Rgb, front.iter().zip(&back.open).flat_map(|(&f, &b)| [mean(f, b), f, b]).collect())
+            (png::ColorType::Rgb, front.iter().zip(&back.open).flat_map(|(&f, &b)| [f.max(b), f, b]).collect())
         }
     };
     write_png(&codes, color, size, bits, file)
-}
-
-/// What a viewer shows on both sides of a surface: the mean of what they see.
-pub(crate) fn mean(front: u16, back: u16) -> u16 {
-    ((u32::from(front) + u32::from(back)) / 2) as u16
 }
 
 /// A code of 16 bits as the nearest of 8.
@@ -124,6 +119,5 @@ mod tests {
     #[test]
     fn codes_of_16_bits_round_to_the_nearest_of_8() {
         assert_eq!([0, 65_535, 257, 128, 129, 32_768].map(in_8_bits), [0, 255, 1, 0, 1, 128]);
-        assert_eq!([(0, 65_535), (3, 3), (65_535, 65_535)].map(|(f, b)| mean(f, b)), [32_767, 3, 65_535]);
     }
 }

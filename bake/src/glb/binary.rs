@@ -45,6 +45,13 @@ impl Binary {
         }))
     }
 
+    /// Adds numbers, one a vertex.
+    pub fn add_scalars(&mut self, numbers: impl Iterator<Item = f32>) -> usize {
+        let accessor = self.add_vectors(numbers.map(|number| [number]));
+        self.accessors[accessor]["type"] = json!("SCALAR");
+        accessor
+    }
+
     /// Adds positions, with the bounds that glTF demands of them.
     pub fn add_positions(&mut self, positions: impl Iterator<Item = [f32; 3]> + Clone) -> usize {
         let fold = |start: f32, pick: fn(f32, f32) -> f32| {

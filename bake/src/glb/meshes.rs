@@ -2,11 +2,12 @@
 
 use super::Occlusion;
 use super::binary::Binary;
+use crate::settings::VertexAttribute;
 use crate::{
     atlas::Layout,
     scene::{Mesh, Scene},
 };
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -33,6 +34,8 @@ pub(super) enum Looks<'a> {
     AsTheyAre,
     /// Occlusion, on page coordinates, with the material of every instance.
     Occluded(Occlusion<'a>, Vec<usize>),
+    /// Openness of every instance's vertices, and no coordinates of a bake.
+    AtVertices(VertexAttribute, &'a [Vec<f32>]),
 }
 
 impl Groups {
@@ -74,19 +77,35 @@ pub(super) fn write(
         let mut one = |&Primitive { mesh, instance }: &Primitive| {
             let layout = &layouts[mesh];
             let shared = shared[mesh].get_or_insert_with(|| Shared::new(scene, mesh, layout, binary));
-            let (uvs, material) = match (looks, instance) {
+            let material = scene.meshes[mesh].material;
+            let mut add_uvs = |uvs: &[Vec2]| binary.add_vectors(uvs.iter().map(Vec2::to_array));
+            match (looks, instance) {
                 (Looks::Occluded(occlusion, materials), Some(instance)) => {
-                    (&occlusion.page_uvs(scene, instance), materials[instance])
+                    shared.primitive(add_uvs(&occlusion.page_uvs(scene, instance)), materials[instance])
                 }
-                _ => (&layout.uvs, scene.meshes[mesh].material),
-            };
-            let baked = binary.add_vectors(uvs.iter().map(Vec2::to_array));
-            shared.primitive(baked, material)
+                (Looks::AtVertices(attribute, open), Some(instance)) => {
+                    let accessor = add_openness(&scene.meshes[mesh], *attribute, &open[instance], binary);
+                    shared.with(attribute.name(), accessor, material)
+                }
+                _ => shared.primitive(add_uvs(&layout.uvs), material),
+            }
         };
         written.insert("primitives".into(), group.iter().map(&mut one).collect());
         Value::from(written)
     };
     groups.meshes.iter().map(&mut write_group).collect()
+}
+
+/// Adds openness as it is stored at vertices.
+fn add_openness(mesh: &Mesh, attribute: VertexAttribute, open: &[f32], binary: &mut Binary) -> usize {
+    let color = |(vertex, &open): (usize, &f32)| {
+        let color = mesh.colors.as_ref().map_or(Vec4::ONE, |colors| colors[vertex]);
+        (color.truncate() * open).extend(color.w).to_array()
+    };
+    match attribute {
+        VertexAttribute::Color => binary.add_vectors(open.iter().enumerate().map(color)),
+        VertexAttribute::Ao => binary.add_scalars(open.iter().copied()),
+    }
 }
 
 /// What all instances of a mesh share.
@@ -120,13 +139,19 @@ impl Shared {
         Self { attributes, indices: binary.add_indices(&layout.indices) }
     }
 
+    /// A primitive with one more attribute.
+    fn with(&self, name: &str, accessor: usize, material: usize) -> Value {
+        let mut attributes = self.attributes.clone();
+        attributes.insert(name.into(), json!(accessor));
+        json!({ "attributes": attributes, "indices": self.indices, "material": material })
+    }
+
     /// A primitive with baked coordinates. They stand in for the picture's where it has none, because set 1 must not be
     /// without set 0.
     fn primitive(&self, baked: usize, material: usize) -> Value {
         let mut attributes = self.attributes.clone();
         attributes.entry("TEXCOORD_0").or_insert_with(|| json!(baked));
-        attributes.insert("TEXCOORD_1".into(), json!(baked));
-        json!({ "attributes": attributes, "indices": self.indices, "material": material })
+        Self { attributes, indices: self.indices }.with("TEXCOORD_1", baked, material)
     }
 }
 

@@ -17,9 +17,10 @@ mod occlusion;
 
 pub use occlusion::{Occlusion, OcclusionPage};
 
-use crate::{atlas::Layout, scene::Scene};
+use crate::{atlas::Layout, scene::Scene, settings::VertexAttribute};
 use binary::Binary;
-use meshes::Looks;
+use materials::Written;
+use meshes::{Groups, Looks};
 use serde_json::{Map, Value, json};
 
 /// A scene in GLB's form, and where its instances stand in it.
@@ -48,19 +49,44 @@ pub struct GlbTooLarge {
 /// Where the file would have 4 GiB or more.
 pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>) -> Result<WrittenScene, GlbTooLarge> {
     let mut binary = Binary::default();
-    let groups = meshes::Groups::new(scene, occlusion.is_some());
+    let groups = Groups::new(scene, occlusion.is_some());
     let mut materials = materials::write(scene, &mut binary);
     let looks = match &occlusion {
         None => Looks::AsTheyAre,
         Some(occlusion) => Looks::Occluded(*occlusion, occlusion.add_to(scene, &mut materials, &mut binary)),
     };
-    let meshes = meshes::write(scene, layouts, &groups, &looks, &mut binary);
+    let bytes = finish(scene, layouts, &groups, &looks, materials, binary)?;
+    Ok(WrittenScene { bytes, places: groups.places, has_page_uvs: occlusion.is_some() })
+}
+
+/// Writes a scene with openness at its vertices (for each instance, that of its mesh's vertices) and no baked coordinates.
+///
+/// # Errors
+///
+/// Where the file would have 4 GiB or more.
+pub fn write_vertices(scene: &Scene, attribute: VertexAttribute, open: &[Vec<f32>]) -> Result<Vec<u8>, GlbTooLarge> {
+    let mut binary = Binary::default();
+    let groups = Groups::new(scene, true);
+    let materials = materials::write(scene, &mut binary);
+    let layouts: Vec<Layout> = scene.meshes.iter().map(Layout::of_mesh).collect();
+    finish(scene, &layouts, &groups, &Looks::AtVertices(attribute, open), materials, binary)
+}
+
+fn finish(
+    scene: &Scene,
+    layouts: &[Layout],
+    groups: &Groups,
+    looks: &Looks,
+    materials: Written,
+    mut binary: Binary,
+) -> Result<Vec<u8>, GlbTooLarge> {
+    let meshes = meshes::write(scene, layouts, groups, looks, &mut binary);
     let mut root = Map::new();
     root.insert("asset".into(), json!({ "version": "2.0", "generator": GENERATOR }));
     root.insert("scene".into(), json!(0));
     root.insert("scenes".into(), json!([{ "nodes": nodes::roots(scene) }]));
     let lists = [
-        ("nodes", nodes::write(scene, &groups)),
+        ("nodes", nodes::write(scene, groups)),
         ("cameras", nodes::cameras(scene)),
         ("meshes", meshes),
         ("materials", materials.materials),
@@ -73,8 +99,7 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
         ("buffers", vec![json!({ "byteLength": binary.bytes.len() })]),
     ];
     root.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| (name.into(), list.into())));
-    let bytes = container(&Value::from(root).to_string(), &binary.bytes)?;
-    Ok(WrittenScene { bytes, places: groups.places, has_page_uvs: occlusion.is_some() })
+    container(&Value::from(root).to_string(), &binary.bytes)
 }
 
 const GENERATOR: &str = concat!("sunbake ", env!("CARGO_PKG_VERSION"));

@@ -6,13 +6,14 @@
 use super::binary::Binary;
 use super::materials::{Written, index_of};
 use crate::atlas::{Atlas, PageSize};
-use crate::disk::{in_8_bits, mean};
+use crate::disk::in_8_bits;
 use crate::maps::AmbientMaps;
 use crate::scene::Scene;
 use glam::Vec2;
 use serde_json::json;
 
-/// A page's occlusion texture, as viewers read it: 8 bits, and the mean of both sides where there are two.
+/// A page's occlusion texture, as viewers read it: 8 bits, and where there are two sides the one that sees more. Most models
+/// that are two-sided throughout are closed, and their insides dark; and an eye is mostly where it is open.
 #[derive(Debug, Clone)]
 pub struct OcclusionPage {
     png: Vec<u8>,
@@ -24,7 +25,7 @@ impl OcclusionPage {
         let front = &maps.front.open;
         let grey: Vec<u8> = match &maps.back {
             None => front.iter().map(|&code| in_8_bits(code)).collect(),
-            Some(back) => front.iter().zip(&back.open).map(|(&f, &b)| in_8_bits(mean(f, b))).collect(),
+            Some(back) => front.iter().zip(&back.open).map(|(&f, &b)| in_8_bits(f.max(b))).collect(),
         };
         let mut png = Vec::new();
         let mut encoder = png::Encoder::new(&mut png, size.width, size.height);

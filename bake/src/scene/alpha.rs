@@ -53,6 +53,13 @@ where
     a * (1.0 - u - v) + b * u + c * v
 }
 
+/// Blends the alphas of three corners. Where they are equal the blend is just that: weights add up to one but for rounding,
+/// and a cutoff of 1 would otherwise find holes in what is solid all over.
+pub fn blend_alphas(corners: [f32; 3], weights: [f32; 2]) -> f32 {
+    let [a, b, c] = corners;
+    if a == b && b == c { a } else { blend(corners, weights) }
+}
+
 impl Scene {
     /// Whether a point of a triangle of an instance is solid; `barycentric` weighs its second and third corner.
     pub fn is_solid_at(&self, instance: usize, triangle: usize, barycentric: [f32; 2]) -> bool {
@@ -68,7 +75,7 @@ impl Scene {
     }
 
     fn alpha(&self, mesh: &Mesh, material: &Material, triangle: usize, barycentric: [f32; 2]) -> f32 {
-        let vertex = blend(vertex_alphas(mesh, triangle), barycentric);
+        let vertex = blend_alphas(vertex_alphas(mesh, triangle), barycentric);
         let texel = material.base_color_texture.map_or(1.0, |texture| {
             let uv = blend(image_uvs(mesh, &texture, triangle), barycentric);
             image_alpha(&self.images[texture.image], uv, texture.wrap)
@@ -93,6 +100,13 @@ mod tests {
         assert_eq!(wrapped(Wrap::Repeat), [3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0]);
         assert_eq!(wrapped(Wrap::Clamp), [0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3]);
         assert_eq!(wrapped(Wrap::Mirror), [3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0, 0]);
+    }
+
+    #[test]
+    fn equal_alphas_blend_to_themselves_whatever_the_weights() {
+        let weights = |i: u32| [(i % 97) as f32 / 97.0, (i % 89) as f32 / 89.0 * (1.0 - (i % 97) as f32 / 97.0)];
+        assert!((0..10_000).all(|i| blend_alphas([1.0; 3], weights(i)) == 1.0));
+        assert!((0..10_000).any(|i| blend([1.0; 3], weights(i)) < 1.0), "or there is nothing to guard against");
     }
 
     #[test]

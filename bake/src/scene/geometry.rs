@@ -77,6 +77,11 @@ impl Geometry {
         a * (1.0 - u - v) + b * u + c * v
     }
 
+    /// Whether an instance's surface is there at all: its material is not air.
+    pub fn is_solid_instance(&self, scene: &Scene, instance: usize) -> bool {
+        scene.material(instance).alpha != Alpha::Air
+    }
+
     /// Whether the triangle blocks light at all (its material is not air, its corners do not coincide).
     pub fn is_solid(&self, scene: &Scene, triangle: usize) -> bool {
         let instance = self.instance[triangle] as usize;

@@ -1,6 +1,6 @@
 //! Which points of which triangles are holes.
 
-use crate::scene::alpha::{blend, image_uvs, nearest_texel, vertex_alphas, wrap_texel};
+use crate::scene::alpha::{blend, blend_alphas, image_uvs, nearest_texel, vertex_alphas, wrap_texel};
 use crate::scene::{Alpha, Geometry, Scene, Wrap};
 use glam::{DVec2, Vec2};
 
@@ -190,7 +190,7 @@ impl Cuts {
         let texel = triangle
             .mask
             .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
-        is_solid(blend(triangle.alphas, barycentric), texel, triangle.cutoff)
+        is_solid(blend_alphas(triangle.alphas, barycentric), texel, triangle.cutoff)
     }
 }
 

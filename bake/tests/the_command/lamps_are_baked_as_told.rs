@@ -35,7 +35,8 @@ fn a_lamp_instead_of_the_sun_is_all_that_a_set_holds() {
             (&effect(&manifest, "sun-intervals")["on"], &effect(&manifest, "lamp-intervals")["on"]),
             (&json!(false), &json!(true))
         );
-        let files = ["page0_lamp_layer0_fall.png", "page0_lamp_layer0_rise.png", "scene.glb", "sunbake.json"];
+        let files =
+            ["page0_ao.png", "page0_lamp_layer0_fall.png", "page0_lamp_layer0_rise.png", "scene.glb", "sunbake.json"];
         assert_eq!(names(&desk.path("out/set")), files);
         let texel = desk.run(&["texels", "out/set", "--count=1"]).ok().json();
         assert_eq!((&texel["lit"], texel["lamp"].as_array().map(Vec::len)), (&json!([]), Some(1)));

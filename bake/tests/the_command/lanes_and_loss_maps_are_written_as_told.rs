@@ -18,7 +18,8 @@ fn three_lanes_write_three_times_the_textures() {
     assert_eq!((lanes.len(), weights.iter().sum::<f64>()), (3, 1.0));
     // The floor is lit all day, so each lane has one layer: a rise and a fall.
     let lane_files = (0..3).flat_map(|k| ["fall", "rise"].map(|what| format!("page0_lane{k}_layer0_{what}.png")));
-    let expected: Vec<String> = lane_files.chain(["scene.glb".into(), "sunbake.json".into()]).collect();
+    let ao = std::iter::once("page0_ao.png".to_owned());
+    let expected: Vec<String> = ao.chain(lane_files).chain(["scene.glb".into(), "sunbake.json".into()]).collect();
     assert_eq!(names(&desk.path("out/set")), expected);
     assert_eq!(disc_lanes(&manifest["effects"])["on"], true);
     let told = desk.run(&["inspect", "out/set"]).ok().stdout;
@@ -134,7 +135,8 @@ fn a_set_holds_a_loss_map_only_if_it_was_asked_for() {
     let desk = Desk::new();
     let plain = desk.bake(&["--json"]).ok().json();
     assert_eq!(plain["atlases"][0].get("loss_map"), None);
-    let maps = ["page0_lane0_layer0_fall.png", "page0_lane0_layer0_rise.png", "scene.glb", "sunbake.json"];
+    let maps =
+        ["page0_ao.png", "page0_lane0_layer0_fall.png", "page0_lane0_layer0_rise.png", "scene.glb", "sunbake.json"];
     assert_eq!(names(&desk.path("out/set")), maps);
     let told = desk.bake(&["--loss-map", "--force"]).ok().stdout;
     assert!(told.contains("lost_minutes.0.png (brightest: "), "{told}");

@@ -1,0 +1,139 @@
+//! Openness of vertices, for engines without a second set of texture coordinates.
+//!
+//! A vertex stands for the surface around it: its rays start from a point in each triangle that meets there, an eighth of
+//! the way to the triangle's middle, so that none starts on an edge where walls meet. Points inside a solid are passed over,
+//! else every vertex that touches the ground would be darkened from below. Vertices of an instance that share a place and a
+//! normal (cut apart by texture coordinates, say) share their openness. What a triangle is too large to show between its
+//! corners, vertices cannot hold (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4),
+//! 2011, discuss what they can).
+
+use super::estimate::{AmbientEngine, AmbientPoint, Estimates, find_ambient};
+use crate::atlas::SurfacePoint;
+use crate::scene::{Geometry, Scene, ShadingNormals};
+use crate::trace::ScatterRoom;
+use std::collections::HashMap;
+
+/// How far a corner's point is moved towards the middle of its triangle.
+const PULL: f64 = 0.125;
+
+/// For each instance, how open each vertex of its mesh is, 0 to 1; of double-sided surfaces, the side that sees more. Instances
+/// that are air have none. `on_progress` gets the number of places that were done, of as many as it is first told, and
+/// returns false to stop; then there is no answer.
+pub fn openness_of_vertices(
+    engine: &AmbientEngine,
+    scene: &Scene,
+    geometry: &Geometry,
+    normals: &ShadingNormals,
+    on_progress: impl Fn(usize) -> bool + Sync,
+) -> Option<Vec<Vec<f32>>> {
+    let mut corners: Vec<Vec<AmbientPoint>> = Vec::new();
+    let mut places: Vec<Vec<u32>> = Vec::with_capacity(scene.instances.len());
+    for instance in 0..scene.instances.len() {
+        places.push(gather(scene, geometry, normals, instance, &mut corners));
+    }
+    let texel = |place: usize, points: &mut Vec<AmbientPoint>| {
+        let mut room = ScatterRoom::default();
+        let of_place = &corners[place];
+        points.extend(of_place.iter().filter(|point| !engine.is_point_buried(&mut room, point)));
+        if points.is_empty() {
+            points.extend(of_place);
+        }
+    };
+    let runs = find_ambient(engine, corners.len(), texel, on_progress)?;
+    let open = more_open_sides(&runs);
+    Some(places.into_iter().map(|of_vertices| of_vertices.iter().map(|&place| value(&open, place)).collect()).collect())
+}
+
+/// A place without a triangle is open.
+fn value(open: &[f32], place: u32) -> f32 {
+    open.get(place as usize).copied().unwrap_or(1.0)
+}
+
+fn more_open_sides(runs: &[Estimates]) -> Vec<f32> {
+    let mut open = Vec::new();
+    for run in runs {
+        let first = open.len();
+        open.extend(run.front.iter().map(|front| front.open));
+        for (index, back) in &run.back {
+            let side = &mut open[first + *index as usize];
+            *side = side.max(back.open);
+        }
+    }
+    open
+}
+
+/// Adds the places of an instance's vertices, and gives back the place of each vertex; none for a vertex without a triangle.
+fn gather(
+    scene: &Scene,
+    geometry: &Geometry,
+    normals: &ShadingNormals,
+    instance: usize,
+    places: &mut Vec<Vec<AmbientPoint>>,
+) -> Vec<u32> {
+    let mesh = &scene.meshes[scene.instances[instance].mesh];
+    let first = geometry.first_triangle[instance] as usize;
+    let mut of_vertex = vec![u32::MAX; mesh.positions.len()];
+    if !geometry.is_solid_instance(scene, instance) {
+        return of_vertex;
+    }
+    let mut known: HashMap<[u32; 6], u32> = HashMap::new();
+    for (index, &vertex) in mesh.indices.iter().enumerate() {
+        let vertex = vertex as usize;
+        let normal = mesh.normals.as_ref().map_or(glam::Vec3::ZERO, |normals| normals[vertex]);
+        let key = std::array::from_fn(|k| if k < 3 { mesh.positions[vertex][k] } else { normal[k - 3] }.to_bits());
+        let place = *known.entry(key).or_insert_with(|| {
+            places.push(Vec::new());
+            places.len() as u32 - 1
+        });
+        of_vertex[vertex] = place;
+        places[place as usize].push(corner(scene, geometry, normals, first + index / 3, index % 3));
+    }
+    of_vertex
+}
+
+/// The point that stands for a corner of a triangle.
+fn corner(
+    scene: &Scene,
+    geometry: &Geometry,
+    normals: &ShadingNormals,
+    triangle: usize,
+    corner: usize,
+) -> AmbientPoint {
+    let at = |pull: f64| [1, 2].map(|k| if corner == k { 1.0 - pull * 2.0 / 3.0 } else { pull / 3.0 });
+    let instance = geometry.instance[triangle] as usize;
+    AmbientPoint {
+        surface: SurfacePoint {
+            position_m: geometry.point(triangle, at(PULL)),
+            normal: geometry.normal(triangle),
+            is_double_sided: scene.material(instance).is_double_sided,
+            triangle: triangle as u32,
+        },
+        shading_normal: normals.at(scene, geometry, triangle, at(0.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::AmbientRequest;
+    use crate::testing::{SceneBuilder, block};
+    use crate::trace::Tracer;
+    use glam::Vec3;
+
+    #[test]
+    fn vertices_on_the_ground_see_half_of_the_sky_and_those_on_top_all_of_it() {
+        // Both are solids, and they touch: what lies between them is buried.
+        let ground = block(Vec3::new(-500.0, -1.0, -500.0), Vec3::new(500.0, 0.0, 500.0));
+        let cube = block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0));
+        let scene = SceneBuilder::new().soup(&ground).soup(&cube).build();
+        let geometry = Geometry::new(&scene);
+        let tracer = Tracer::new(&scene, &geometry);
+        let engine = AmbientEngine::new(&scene, &geometry, &tracer, AmbientRequest::with_rays(1024).estimate);
+        let open = openness_of_vertices(&engine, &scene, &geometry, &ShadingNormals::new(&scene), |_| true).unwrap();
+        for (position, &open) in scene.meshes[1].positions.iter().zip(&open[1]) {
+            // No normals: a vertex is the mean of its faces, an upper one of a lid and of two or four walls.
+            let expected = if position.y > 1.0 { 0.55..0.85 } else { 0.45..0.53 };
+            assert!(expected.contains(&open), "{open} at {position}");
+        }
+    }
+}
