@@ -1,14 +1,14 @@
 //! Playback on the GPU against the same frames on the CPU. These tests need an adapter, and fail without one.
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
-use sunbake::maps::Bits;
+use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque};
+use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque, pseudo_random};
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
 use sunbake_runtime::testing::{bake, bake_lanes, equinox, table_line, twins, view};
-use sunbake_runtime::{Filter, Shot, Stage};
+use sunbake_runtime::{AmbientModel, Filter, Shot, Stage};
 
 fn gpu() -> Gpu {
     Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
@@ -106,6 +106,35 @@ fn posts_on_a_floor() {
     let stage = bake(posts(), Some(equinox(35.0)), 20, Bits::Sixteen);
     for (name, filter) in [("posts bilinear", Filter::Bilinear), ("posts nearest", Filter::Nearest)] {
         assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
+    }
+}
+
+/// Maps of ambient light full of noise, of so many sides.
+fn noisy_ambient(stage: &Stage, sides: usize) -> AmbientMaps {
+    let texels = stage.pages[0].width as usize * stage.pages[0].height as usize;
+    let mut state = 11;
+    let mut code = || (pseudo_random(&mut state) * 65_535.0) as u16;
+    let mut side = || AmbientSide {
+        open: (0..texels).map(|_| code()).collect(),
+        bent: Some((0..texels).map(|_| [0; 3].map(|_: u16| code())).collect()),
+        sky: Some((0..texels).map(|_| [0; 9].map(|_: u16| code())).collect()),
+    };
+    AmbientMaps { front: side(), back: (sides > 1).then(side) }
+}
+
+#[test]
+fn every_model_of_ambient_light() {
+    let gpu = gpu();
+    for (sides, model) in [1, 2].into_iter().flat_map(|sides| {
+        [AmbientModel::Hemisphere, AmbientModel::Openness, AmbientModel::Bent, AmbientModel::Sky].map(|m| (sides, m))
+    }) {
+        let mut stage = bake(everything(Wrap::Repeat), Some(equinox(35.0)), 24, Bits::Eight);
+        stage.pages[0].ambient = Some(noisy_ambient(&stage, sides));
+        let stage = stage.with_ambient(model);
+        assert_eq!(stage.best_ambient(), model);
+        let name = format!("{model:?}, {sides} side(s)");
+        let eye = DVec3::new(4.0, 3.5, -7.0);
+        assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), Filter::Bilinear));
     }
 }
 

@@ -17,7 +17,7 @@ use sunbake::disk::read::{BakedSet, read};
 use sunbake::maps::{Bits, PageMaps, stored_intervals};
 use sunbake::progress::Silent;
 use sunbake::scene::{Geometry, Mesh, Scene};
-use sunbake::settings::{BakeSettings, SunRequest};
+use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
 use sunbake::visibility::{ExactEngine, Intervals, RayEngine, lit_at};
@@ -162,9 +162,10 @@ pub fn june_day() -> DayRequest {
     }
 }
 
-/// A small, quick bake: a page of 128, 16 bits.
+/// A small, quick bake: a page of 128, 16 bits, few rays of sky.
 pub fn quick() -> BakeSettings {
-    BakeSettings { page_size_texels: 128, ..BakeSettings::standard(SunRequest::Day(june_day())) }
+    let ambient = Some(AmbientRequest::with_rays(16));
+    BakeSettings { page_size_texels: 128, ambient, ..BakeSettings::standard(SunRequest::Day(june_day())) }
 }
 
 /// Bakes a scene made by code into `FOLDER/NAME` and reads the set back.

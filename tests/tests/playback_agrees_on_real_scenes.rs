@@ -2,8 +2,9 @@
 //! at edges. Needs a GPU adapter, and fails without one.
 
 use std::path::{Path, PathBuf};
+use sunbake::ambient::AmbientSettings;
 use sunbake::progress::Silent;
-use sunbake::settings::{BakeSettings, EngineChoice, SunRequest};
+use sunbake::settings::{AmbientRequest, BakeSettings, EngineChoice, SunRequest};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
 use sunbake_runtime::testing::{table_line, twins};
@@ -17,8 +18,14 @@ fn settings(page_size_texels: u32) -> BakeSettings {
     BakeSettings {
         page_size_texels,
         engine: EngineChoice::Rays(16),
+        ambient: Some(ambient()),
         ..BakeSettings::standard(SunRequest::Day(june_day()))
     }
+}
+
+fn ambient() -> AmbientRequest {
+    let request = AmbientRequest::with_rays(16);
+    AmbientRequest { estimate: AmbientSettings { wants_sky: true, ..request.estimate }, ..request }
 }
 
 fn assert_twins_agree_on(name: &str, scene: &Path, page_size_texels: u32) {

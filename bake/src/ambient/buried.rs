@@ -9,7 +9,7 @@
 use super::directions::{Draw, Frame, draw_block};
 use super::estimate::AmbientPoint;
 use crate::scene::{Geometry, Scene};
-use crate::trace::{Direction, Scatter, ScatterRoom, Tracer};
+use crate::trace::{Direction, Scatter, ScatterRoom, ShadowQuery, Tracer};
 use glam::DVec3;
 
 /// Rays that are asked at most.
@@ -62,7 +62,8 @@ impl<'a> Burial<'a> {
         let mut escaped = 0;
         for draw in &self.draws {
             *rays += 1;
-            escaped += u32::from(!self.meets_back(scatter, room, origin_m, frame.direction(draw)));
+            let ray = ShadowQuery { origin_m, direction: frame.direction(draw), triangle: point.surface.triangle };
+            escaped += u32::from(!self.meets_back(scatter, room, &ray));
             if escaped > ESCAPES {
                 return false;
             }
@@ -70,8 +71,9 @@ impl<'a> Burial<'a> {
         true
     }
 
-    fn meets_back(&self, scatter: &Scatter, room: &mut ScatterRoom, origin_m: DVec3, direction: DVec3) -> bool {
-        let Some(hit) = scatter.nearest(room, origin_m, direction, f64::INFINITY) else { return false };
+    fn meets_back(&self, scatter: &Scatter, room: &mut ScatterRoom, ray: &ShadowQuery) -> bool {
+        let &ShadowQuery { origin_m, direction, .. } = ray;
+        let Some(hit) = scatter.nearest(room, std::slice::from_ref(ray), f64::INFINITY)[0] else { return false };
         let is_back = |triangle: u32| {
             let instance = self.geometry.instance[triangle as usize] as usize;
             !self.scene.material(instance).is_double_sided

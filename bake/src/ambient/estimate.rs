@@ -300,10 +300,8 @@ impl AmbientEngine<'_> {
                 (0..rays.len()).for_each(|ray| hidden[ray] = f64::from(stopped >> ray & 1));
             }
             Some(reach_m) => {
-                for (ray, hidden) in rays.iter().zip(&mut hidden) {
-                    let hit = self.scatter.nearest(walk, ray.origin_m, ray.direction, reach_m);
-                    *hidden = hit.map_or(0.0, |hit| hidden_share(hit.distance_m, reach_m));
-                }
+                let hits = self.scatter.nearest(walk, rays, reach_m);
+                hidden = hits.map(|hit| hit.map_or(0.0, |hit| hidden_share(hit.distance_m, reach_m)));
             }
         }
         hidden

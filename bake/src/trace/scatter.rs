@@ -36,11 +36,12 @@ pub struct Scatter<'a> {
 /// Room that a walk needs, kept from one to the next.
 #[derive(Debug, Default)]
 pub struct ScatterRoom {
-    stack: Vec<Pending>,
     near: [f32; WIDTH],
     rays: Vec<ShadowRay>,
     /// What rays have yet to go to together, and which of them.
     shared: Vec<(Child, u32)>,
+    /// The same with their distances.
+    sorted: Vec<Pending>,
     /// For each ray, the children of a node that it met.
     children: [u32; PACKET],
 }
@@ -49,7 +50,8 @@ pub struct ScatterRoom {
 #[derive(Debug, Clone, Copy)]
 struct Pending {
     child: Child,
-    /// Least distance along the ray.
+    met_by: u32,
+    /// Least distance along any of the rays that met it.
     near: f32,
 }
 
@@ -142,19 +144,25 @@ impl<'a> Scatter<'a> {
         }
     }
 
-    /// The nearest surface along the direction within `reach_m`.
-    pub fn nearest(&self, room: &mut ScatterRoom, origin_m: DVec3, direction: DVec3, reach_m: f64) -> Option<Hit> {
-        let direction = Direction::new(direction);
-        let start = self.tracer.shadow_start(origin_m, &direction);
-        let ray = ShadowRay { narrow: Narrow::new(start, &direction), start, direction, own: u32::MAX };
-        let reach = reach_m * self.tracer.tracer_from_bake + self.tracer.run_up;
-        let level = self.level;
-        let (id, distance, barycentric) = dispatch!(level, simd => self.first(simd, room, &ray, reach))?;
-        Some(Hit {
-            triangle: self.tracer.flat[id as usize],
-            distance_m: (distance - self.tracer.run_up).max(0.0) / self.tracer.tracer_from_bake,
-            barycentric,
-        })
+    /// For each of up to [`PACKET`] shadow rays, the nearest surface within `reach_m`; for the rest, none.
+    pub fn nearest(&self, room: &mut ScatterRoom, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
+        room.rays.clear();
+        room.rays.extend(queries.iter().map(|query| self.ray(query)));
+        let mut found = [None; PACKET];
+        if !queries.is_empty() && !self.wide.nodes.is_empty() {
+            let reach = reach_m * self.tracer.tracer_from_bake + self.tracer.run_up;
+            let level = self.level;
+            dispatch!(level, simd => self.find_nearest(simd, room, reach, &mut found));
+        }
+        found.map(|found| found.map(|nearest| self.hit(&nearest)))
+    }
+
+    fn hit(&self, nearest: &Nearest) -> Hit {
+        Hit {
+            triangle: self.tracer.flat[nearest.id as usize],
+            distance_m: (nearest.distance - self.tracer.run_up).max(0.0) / self.tracer.tracer_from_bake,
+            barycentric: nearest.barycentric,
+        }
     }
 
     #[inline]
@@ -220,64 +228,88 @@ impl<'a> Scatter<'a> {
         open & !active
     }
 
+    /// Walks for all rays, near nodes first, and finds what is nearest to each.
     #[inline(always)]
-    fn first<S: Simd>(
+    fn find_nearest<S: Simd>(
         &self,
         simd: S,
         room: &mut ScatterRoom,
-        ray: &ShadowRay,
-        mut reach: f64,
-    ) -> Option<(u32, f64, [f64; 2])> {
-        let mut found = None;
-        room.stack.clear();
-        if !self.wide.nodes.is_empty() {
-            room.stack.push(Pending { child: Child::ROOT, near: 0.0 });
-        }
-        while let Some(pending) = room.stack.pop() {
-            let far = reach as f32 * (1.0 + 1e-6);
-            if pending.near > far {
-                continue;
-            }
-            match pending.child {
+        reach: f64,
+        found: &mut [Option<Nearest>; PACKET],
+    ) {
+        let ScatterRoom { rays, sorted, children, near, .. } = room;
+        let mut reach = [reach; PACKET];
+        sorted.clear();
+        sorted.push(Pending { child: Child::ROOT, met_by: all(rays.len()), near: 0.0 });
+        while let Some(Pending { child, met_by, near: least }) = sorted.pop() {
+            let mut asking = met_by;
+            match child {
                 Child::Node(node) => {
                     let node = &self.wide.nodes[node as usize];
-                    let mut met = node_met(simd, node, &ray.narrow, far, &mut room.near);
-                    let first = room.stack.len();
+                    let mut met = 0;
+                    let mut nearest = f32x16::splat(simd, f32::INFINITY);
+                    children.fill(0);
+                    while asking != 0 {
+                        let ray = asking.trailing_zeros() as usize;
+                        asking &= asking - 1;
+                        let far = reach[ray] as f32 * FAR_SLACK;
+                        if least <= far {
+                            children[ray] = node_met(simd, node, &rays[ray].narrow, far, near);
+                            met |= children[ray];
+                            nearest = nearest.min(f32x16::from_slice(simd, near));
+                        }
+                    }
+                    nearest.store_slice(near);
+                    let of_rays = u32x16::from_slice(simd, children);
+                    let first = sorted.len();
                     while met != 0 {
                         let lane = met.trailing_zeros() as usize;
                         met &= met - 1;
-                        push_far_first(
-                            &mut room.stack,
-                            first,
-                            Pending { child: node.child[lane], near: room.near[lane] },
-                        );
+                        let bit = u32x16::splat(simd, 1 << lane);
+                        let met_by = (of_rays & bit).simd_eq(bit).to_bitmask() as u32;
+                        push_far_first(sorted, first, Pending { child: node.child[lane], met_by, near: near[lane] });
                     }
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &self.wide.leaves[leaf as usize];
-                    let mut met = leaf_met(simd, leaf, &ray.narrow, far);
-                    while met != 0 {
-                        let id = leaf.ids[met.trailing_zeros() as usize];
-                        met &= met - 1;
-                        if let Some((distance, barycentric)) = self.meets(ray, id)
-                            && is_nearer((id, distance), found, reach)
-                        {
-                            reach = distance;
-                            found = Some((id, distance, barycentric));
+                    while asking != 0 {
+                        let index = asking.trailing_zeros() as usize;
+                        asking &= asking - 1;
+                        let (ray, reach, found) = (&rays[index], &mut reach[index], &mut found[index]);
+                        let mut met = leaf_met(simd, leaf, &ray.narrow, *reach as f32 * FAR_SLACK);
+                        while met != 0 {
+                            let id = leaf.ids[met.trailing_zeros() as usize];
+                            met &= met - 1;
+                            if id != ray.own
+                                && let Some((distance, barycentric)) = self.meets(ray, id)
+                                && is_nearer((id, distance), found, *reach)
+                            {
+                                (*reach, *found) = (distance, Some(Nearest { id, distance, barycentric }));
+                            }
                         }
                     }
                 }
             }
         }
-        found
     }
+}
+
+/// The walk prunes by distances in `f32`: its end is moved out by more than those round.
+const FAR_SLACK: f32 = 1.0 + 1e-6;
+
+/// What is nearest to a ray so far, tracer space.
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    id: u32,
+    distance: f64,
+    barycentric: [f64; 2],
 }
 
 /// Of equally near triangles the one with the lowest index counts, whatever the order they are met in.
 #[inline]
-fn is_nearer((id, distance): (u32, f64), found: Option<(u32, f64, [f64; 2])>, reach: f64) -> bool {
+fn is_nearer((id, distance): (u32, f64), found: &Option<Nearest>, reach: f64) -> bool {
     match found {
-        Some((best, least, _)) => distance < least || (distance == least && id < best),
+        Some(nearest) => distance < nearest.distance || (distance == nearest.distance && id < nearest.id),
         None => distance <= reach,
     }
 }
@@ -350,4 +382,77 @@ fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, ray: &Narrow, far: f32) -> u32 {
 #[inline(always)]
 fn all(count: usize) -> u32 {
     (1 << count) - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Geometry;
+    use crate::testing::{SceneBuilder, block, floor, icosphere, pseudo_random};
+    use glam::{Vec2, Vec3};
+
+    /// Stones, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
+    fn packets(ask: impl Fn(&Tracer, &mut Scatter, &[ShadowQuery])) {
+        let mut builder = SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0));
+        for i in 0..12 {
+            let at = Vec3::new((i % 4) as f32 * 2.0 - 3.0, 0.3, (i / 4) as f32 * 2.0 - 2.0);
+            let stone: Vec<[Vec3; 3]> = icosphere(2).iter().map(|t| t.map(|v| v * 0.5 + at)).collect();
+            builder = builder.soup(&stone).soup(&block(at + Vec3::X, at + Vec3::new(1.004, 2.0, 0.3)));
+        }
+        let scene = builder.build();
+        let geometry = Geometry::new(&scene);
+        let tracer = Tracer::new(&scene, &geometry);
+        let mut scatter = Scatter::new(&tracer);
+        let mut state = 5;
+        let mut random = || pseudo_random(&mut state);
+        for _ in 0..400 {
+            let spread = random();
+            let axis = DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5).normalize();
+            let mut query = || {
+                let triangle = (random() * geometry.triangles.len() as f64) as u32;
+                let point = geometry.point(triangle as usize, [random() * 0.5, random() * 0.5]);
+                let normal = geometry.normal(triangle as usize);
+                let way = (axis + spread * DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5)).normalize();
+                let direction = if way.dot(normal) < 0.0 { -way } else { way };
+                ShadowQuery { origin_m: tracer.lift(point, normal, triangle), direction, triangle }
+            };
+            let queries: Vec<ShadowQuery> = (0..PACKET).map(|_| query()).collect();
+            ask(&tracer, &mut scatter, &queries);
+        }
+    }
+
+    #[test]
+    fn packets_are_stopped_by_what_stops_single_rays() {
+        packets(|tracer, scatter, queries| {
+            let expected = queries.iter().map(|q| tracer.is_occluded(q.origin_m, &Direction::new(q.direction)));
+            let expected = expected.enumerate().fold(0, |bits, (i, is_stopped)| bits | u32::from(is_stopped) << i);
+            for level in [Level::new(), Level::baseline()] {
+                scatter.level = level;
+                for count in [PACKET, 5] {
+                    let mut guess = None;
+                    for _ in 0..2 {
+                        let stopped = scatter.occluded(&mut ScatterRoom::default(), &queries[..count], &mut guess);
+                        assert_eq!(stopped, expected & all(count));
+                    }
+                }
+            }
+        });
+    }
+
+    #[test]
+    fn packets_find_what_is_nearest_to_single_rays() {
+        packets(|tracer, scatter, queries| {
+            for (level, reach_m) in [(Level::new(), f64::INFINITY), (Level::baseline(), 1.5)] {
+                scatter.level = level;
+                let found = scatter.nearest(&mut ScatterRoom::default(), queries, reach_m);
+                for (query, found) in queries.iter().zip(found) {
+                    let hit = tracer.closest_hit(query.origin_m, &Direction::new(query.direction));
+                    let expected = hit.filter(|hit| hit.distance_m <= reach_m).map(|hit| hit.distance_m);
+                    let off = expected.zip(found).map(|(expected, found)| (expected - found.distance_m).abs());
+                    assert_eq!(expected.is_some(), found.is_some(), "{expected:?} {found:?}");
+                    assert!(off.is_none_or(|off| off < 1e-4), "{expected:?} {found:?}");
+                }
+            }
+        });
+    }
 }
