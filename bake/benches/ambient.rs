@@ -5,12 +5,14 @@
 //! page, against [`TRUTH_RAYS`] rays of other seeds. The rivals take turns, so that whatever else the machine does falls on
 //! all alike: this crate's estimate, and *plain random* sampling, which asks the same hierarchy in independent directions.
 //!
-//! Options after `--`: `size=1024 runs=12 scene=NAME only=error|pages|threads plot=FILE.svg`.
+//! Options after `--`: `size=1024 runs=6 scene=NAME only=error|pages|threads plot=FILE.svg`. The plot shows errors against time.
 
 mod common;
+mod plot;
 
 use glam::DVec3;
 use std::collections::HashMap;
+use std::path::Path;
 use std::time::Instant;
 use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, find_ambient};
 use sunbake::atlas::{self, Atlas, AtlasSettings, PageSamples, Sample};
@@ -21,7 +23,7 @@ use sunbake::trace::{Scatter, ScatterRoom, ShadowQuery, Tracer};
 const SHARED: [&str; 3] =
     ["osrf_city/osrf_city.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
 /// Rays of what errors are measured against.
-const TRUTH_RAYS: u32 = 16_384;
+const TRUTH_RAYS: u32 = 65_536;
 /// Texels of a run.
 const RUN: usize = 512;
 
@@ -30,6 +32,7 @@ fn main() {
         std::env::args().filter_map(|a| a.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned()))).collect();
     let number = |key: &str, otherwise: usize| given.get(key).and_then(|v| v.parse().ok()).unwrap_or(otherwise);
     let wants = |part: &str| given.get("only").is_none_or(|only| only == part);
+    let mut curves: Vec<(String, Curves)> = Vec::new();
     for file in common::scenes(&SHARED) {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if given.get("scene").is_some_and(|wanted| *wanted != name) {
@@ -51,10 +54,19 @@ fn main() {
             threads(&page);
         }
         if wants("error") {
-            errors(&page, number("runs", 12));
+            curves.push((name, errors(&page, number("runs", 6))));
+        }
+    }
+    if let Some(file) = given.get("plot").filter(|_| !curves.is_empty()) {
+        match plot::draw(Path::new(file), &curves) {
+            Ok(()) => println!("\nplotted in {file}"),
+            Err(error) => println!("\n{file}: {error}"),
         }
     }
 }
+
+/// Microseconds a texel and root mean square error, with more and more rays: ours, and plain random sampling's.
+type Curves = [Vec<(f64, f64)>; 2];
 
 /// A page of a scene, ready to be asked about.
 struct Page<'a> {
@@ -148,8 +160,9 @@ fn threads(page: &Page) {
 }
 
 /// Error against time, one thread.
-fn errors(page: &Page, runs: usize) {
-    let step = (page.texels.len() / runs.max(1)).max(RUN);
+fn errors(page: &Page, runs: usize) -> Curves {
+    let runs = runs.max(1);
+    let step = (page.texels.len() / runs).max(RUN);
     let texels: Vec<usize> =
         (0..page.texels.len()).step_by(step).flat_map(|s| s..(s + RUN).min(page.texels.len())).collect();
     let truth = page.open(&page.engine(AmbientSettings { seed: 1, ..settings(TRUTH_RAYS) }), &texels).0;
@@ -159,6 +172,7 @@ fn errors(page: &Page, runs: usize) {
         "rays", "us a texel", "rms error", "random: us", "rms error", "at equal time"
     );
     let mut last: Option<f64> = None;
+    let mut curves: Curves = [Vec::new(), Vec::new()];
     for rays in (2..=12).map(|bits| 1u32 << bits) {
         let engine = page.engine(settings(rays));
         let ((found, _), ours_s) = on(1, || page.open(&engine, &texels));
@@ -175,7 +189,11 @@ fn errors(page: &Page, runs: usize) {
             ours / at_equal_time
         );
         last = Some(ours);
+        for (curve, point) in curves.iter_mut().zip([(per(ours_s), ours), (per(plain_s), theirs)]) {
+            curve.push(point);
+        }
     }
+    curves
 }
 
 fn rms(found: &[f64], truth: &[f64]) -> f64 {

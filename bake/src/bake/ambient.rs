@@ -36,7 +36,7 @@ impl PageBaker<'_> {
         samples: &PageSamples,
         order: &[u32],
     ) -> Result<Option<AmbientPage>, BakeError> {
-        let Some(sky) = self.sky else { return Ok(None) };
+        let Some(sky) = self.lights.sky else { return Ok(None) };
         self.progress.start(Stage::Ambient, samples.samples.len() as u64);
         let mut seconds = 0.0;
         let baked = timed(&mut seconds, || self.bake_sky(&sky, page, samples, order));
@@ -46,7 +46,7 @@ impl PageBaker<'_> {
 
     /// Bakes openness of vertices into a scene of their own, if that is asked for.
     pub(super) fn bake_vertices(&mut self, writer: &mut SetWriter) -> Result<Option<VertexEntry>, BakeError> {
-        let Some((sky, attribute)) = self.sky.and_then(|sky| Some((sky, sky.request.vertices?))) else {
+        let Some((sky, attribute)) = self.lights.sky.and_then(|sky| Some((sky, sky.request.vertices?))) else {
             return Ok(None);
         };
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);

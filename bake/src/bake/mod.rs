@@ -224,13 +224,13 @@ fn bake_prepared(
         let duration_min = path.duration_min();
         Light { engine, lanes: &[Lane::CENTRE], duration_min, stage: Stage::Lamp }
     });
-    let lights = Lights { sun, lamp };
     let normals = ShadingNormals::new(scene);
     let request = settings.ambient.as_ref();
     let engine = |request: &AmbientRequest| AmbientEngine::new(scene, &geometry, &tracer, request.estimate);
     let engine = timed(&mut seconds.bvh, || request.map(engine));
     let sky = request.zip(engine.as_ref()).map(|(request, engine)| Sky { engine, request, normals: &normals });
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, sky, progress, seconds);
+    let lights = Lights { sun, lamp, sky };
+    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, progress, seconds);
     let atlases = pages.bake_all(&mut writer)?;
     let occlusion = (!pages.occlusion.is_empty()).then(|| Occlusion { atlas, pages: &pages.occlusion });
     let written = glb::write_glb(scene, &atlas.layouts, occlusion)?;

@@ -23,6 +23,8 @@ pub(super) struct Lights<'a> {
     pub sun: Option<Light<'a>>,
     /// A lamp that moves through the scene.
     pub lamp: Option<Light<'a>>,
+    /// Light from all around.
+    pub sky: Option<Sky<'a>>,
 }
 
 /// Bakes pages, and keeps the account.
@@ -31,8 +33,7 @@ pub(super) struct PageBaker<'a> {
     pub(super) geometry: &'a Geometry,
     pub atlas: &'a Atlas,
     pub(super) settings: &'a BakeSettings,
-    lights: Lights<'a>,
-    pub(super) sky: Option<Sky<'a>>,
+    pub(super) lights: Lights<'a>,
     pub(super) progress: &'a dyn Progress,
     pub stats: Stats,
     pub sun: Account,
@@ -51,7 +52,6 @@ impl<'a> PageBaker<'a> {
         atlas: &'a Atlas,
         settings: &'a BakeSettings,
         lights: Lights<'a>,
-        sky: Option<Sky<'a>>,
         progress: &'a dyn Progress,
         seconds: StageSeconds,
     ) -> Self {
@@ -72,7 +72,6 @@ impl<'a> PageBaker<'a> {
             atlas,
             settings,
             lights,
-            sky,
             progress,
             stats,
             sun,
@@ -116,7 +115,7 @@ impl<'a> PageBaker<'a> {
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
         self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
         let order = atlas::by_tiles(&samples, size);
-        let Lights { sun, lamp } = self.lights;
+        let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
         let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, &samples, &order)).transpose()?;
         self.sun = account;
