@@ -200,27 +200,36 @@ fn rms(found: &[f64], truth: &[f64]) -> f64 {
     (found.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / truth.len() as f64).sqrt()
 }
 
-/// Independent directions, the plain way: no net, no order, no guesses.
+/// Independent directions, the plain way: no net, no order, no guesses. Backs are asked as well where there are any, since
+/// the estimate asks them too; the fronts are answered.
 fn random(page: &Page, scatter: &Scatter, texels: &[usize], rays: u32) -> Vec<f64> {
     let mut room = ScatterRoom::default();
+    let mut state = 0x51_7cc1_b727;
     let mut answer = |&index: &usize| {
         let AmbientPoint { surface, shading_normal } = page.point(index);
-        let mut state = index as u64 ^ 0x51_7cc1_b727;
-        let origin_m = page.tracer.lift(surface.position_m, surface.normal, surface.triangle);
-        let (across, up) = shading_normal.any_orthonormal_pair();
-        let (mut count, mut free) = (0u32, 0u32);
-        for _ in 0..rays {
-            let radius = pseudo_random(&mut state).sqrt();
-            let (sin, cos) = (pseudo_random(&mut state) * std::f64::consts::TAU).sin_cos();
-            let height = (1.0 - radius * radius).max(0.0).sqrt();
-            let direction: DVec3 = across * (radius * cos) + up * (radius * sin) + shading_normal * height;
-            if direction.dot(surface.normal) > 0.0 {
-                count += 1;
-                let ray = ShadowQuery { origin_m, direction, triangle: surface.triangle };
-                free += u32::from(scatter.occluded(&mut room, &[ray], &mut None) == 0);
+        let mut side = |sign: f64| {
+            let (plane, normal) = (surface.normal * sign, shading_normal * sign);
+            let origin_m = page.tracer.lift(surface.position_m, plane, surface.triangle);
+            let (across, up) = normal.any_orthonormal_pair();
+            let (mut count, mut free) = (0u32, 0u32);
+            for _ in 0..rays {
+                let radius = pseudo_random(&mut state).sqrt();
+                let (sin, cos) = (pseudo_random(&mut state) * std::f64::consts::TAU).sin_cos();
+                let height = (1.0 - radius * radius).max(0.0).sqrt();
+                let direction: DVec3 = across * (radius * cos) + up * (radius * sin) + normal * height;
+                if direction.dot(plane) > 0.0 {
+                    let ray = ShadowQuery { origin_m, direction, triangle: surface.triangle };
+                    count += 1;
+                    free += u32::from(scatter.occluded(&mut room, &[ray], &mut None) == 0);
+                }
             }
+            f64::from(free) / f64::from(count.max(1))
+        };
+        let front = side(1.0);
+        if surface.is_double_sided {
+            side(-1.0);
         }
-        f64::from(free) / f64::from(count.max(1))
+        front
     };
     texels.iter().map(&mut answer).collect()
 }

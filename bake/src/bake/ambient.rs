@@ -3,7 +3,7 @@
 use super::pages::PageBaker;
 use super::{BakeError, check_cancelled, timed};
 use crate::ambient::{AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, find_ambient, openness_of_vertices};
-use crate::atlas::{self, PageSamples, Sample};
+use crate::atlas::{self, PageSamples, PageSize, Sample};
 use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
 use crate::disk::write::{SetWriter, VERTICES_FILE};
 use crate::glb;
@@ -112,7 +112,9 @@ impl FinerSamples {
         if finer < 2 {
             return Self { samples: Vec::new(), first: Vec::new() };
         }
-        let width = baker.atlas.pages[page].width;
+        let PageSize { width, height } = baker.atlas.pages[page];
+        // Texels of the finer grid are counted in 32 bits.
+        let finer = finer.min(0xffff / width.max(height));
         let mut samples = atlas::sample_finer(baker.scene, baker.geometry, baker.atlas, page as u32, finer).samples;
         let texel_of = |sample: &Sample| {
             let (x, y) = (sample.texel % (width * finer), sample.texel / (width * finer));

@@ -1,10 +1,11 @@
 //! The atlas of a bake, within the memory that it may take.
 
 use super::BakeError;
-use crate::atlas::{self, Atlas, AtlasError, AtlasSettings};
+use crate::ambient::Estimate;
+use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, Sample};
 use crate::progress::{Progress, Stage};
 use crate::scene::Scene;
-use crate::settings::BakeSettings;
+use crate::settings::{AmbientRequest, BakeSettings};
 
 /// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
 /// settings that it came to.
@@ -80,6 +81,17 @@ const BYTES_PER_LOST: u64 = 24;
 /// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
+/// Bytes a texel takes while ambient light is baked: for each side an estimate, and its numbers as floats, as codes, and as
+/// bytes on their way to a file; and the points that its rays are spread on.
+fn ambient_bytes(scene: &Scene, request: &AmbientRequest) -> u64 {
+    let has_backs = (0..scene.instances.len()).any(|instance| scene.material(instance).is_double_sided);
+    let sides = if has_backs { 2 } else { 1 };
+    let estimate = &request.estimate;
+    let numbers = 1 + if estimate.wants_bent { 3 } else { 0 } + if estimate.wants_sky { 9 } else { 0 };
+    let points = if request.supersample > 1 { 2 * u64::from(request.supersample).pow(2) } else { 0 };
+    sides * (size_of::<Estimate>() as u64 + 8 * numbers) + points * size_of::<Sample>() as u64
+}
+
 /// Refuses pages of a size whose bake would need more memory than allowed.
 pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_texels: u32) -> Result<(), BakeError> {
     let texels = u64::from(page_size_texels).pow(2);
@@ -90,7 +102,8 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
     let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2 * lanes;
     let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
     let loss_map = if settings.loss_map { BYTES_PER_LOST } else { 0 };
-    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1) + loss_map) + triangles;
+    let ambient = settings.ambient.as_ref().map_or(0, |request| ambient_bytes(scene, request));
+    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1) + loss_map + ambient) + triangles;
     if needed <= settings.max_memory_bytes {
         return Ok(());
     }
@@ -99,7 +112,11 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
             1 => format!("a page of {page_size_texels} x {page_size_texels} texels"),
             lanes => format!("a page of {page_size_texels} x {page_size_texels} texels in {lanes} lanes"),
         } + if lamps > 0 { " with a lamp" } else { "" },
-        smaller: if settings.lane_count > 1 { "--size or --lanes" } else { "--size" },
+        smaller: match (settings.lane_count, settings.ambient.map_or(1, |request| request.supersample)) {
+            (2.., _) => "--size or --lanes",
+            (_, 2..) => "--size or --ao-supersample",
+            _ => "--size",
+        },
         needed_mib: needed >> 20,
         allowed_mib: settings.max_memory_bytes >> 20,
     })
