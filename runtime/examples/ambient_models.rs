@@ -73,7 +73,7 @@ fn table(columns: &[Column], clock: &str) -> Table {
     Table {
         title: vec![
             format!("Light from all around, {clock}"),
-            "below each column, what it reads and a frame's time".into(),
+            "below each column, what it reads and the time of a frame".into(),
         ],
         rows: vec![
             ("sky alone".into(), sky),

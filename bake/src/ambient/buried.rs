@@ -3,6 +3,10 @@
 //! Theory: from inside a closed, outward-facing mesh every way out leads through the back of one of its triangles. From a
 //! point that an eye can see, some ray meets a front, a surface with two sides, or nothing.
 //!
+//! Many files make every surface two-sided, closed things too. Where nothing is seen at all, which without a distance is
+//! what being inside means, their backs count as well: at worst a dark nook takes the value of a dark neighbour. With a
+//! distance they do not: a room of two-sided walls, seen from within, would be taken for the inside of a solid.
+//!
 //! Practice: a few rays over the hemisphere, and the first that escapes settles it, which is the first or second for nearly
 //! every point. Where a back and a front coincide (doubled faces, both windings), the front is believed.
 
@@ -27,16 +31,18 @@ pub(super) struct Burial<'a> {
     geometry: &'a Geometry,
     tracer: &'a Tracer,
     draws: Vec<Draw>,
-    /// Whether there is any single-sided surface.
+    /// Whether the backs of surfaces with two sides count.
+    counts_two_sided: bool,
+    /// Whether there is any back that counts.
     has_backs: bool,
 }
 
 impl<'a> Burial<'a> {
-    pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer) -> Self {
+    pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, counts_two_sided: bool) -> Self {
         let mut draws = vec![Draw::default(); RAYS as usize];
         draw_block(SEED, 0, RAYS, &mut draws);
-        let has_backs = (0..scene.instances.len()).any(|i| !scene.material(i).is_double_sided);
-        Self { scene, geometry, tracer, draws, has_backs }
+        let has_backs = counts_two_sided || (0..scene.instances.len()).any(|i| !scene.material(i).is_double_sided);
+        Self { scene, geometry, tracer, draws, counts_two_sided, has_backs }
     }
 
     /// Whether nothing but backs is seen from a point, on any side of it. Adds the rays that it took.
@@ -76,7 +82,7 @@ impl<'a> Burial<'a> {
         let Some(hit) = scatter.nearest(room, std::slice::from_ref(ray), f64::INFINITY)[0] else { return false };
         let is_back = |triangle: u32| {
             let instance = self.geometry.instance[triangle as usize] as usize;
-            !self.scene.material(instance).is_double_sided
+            (self.counts_two_sided || !self.scene.material(instance).is_double_sided)
                 && self.geometry.normal(triangle as usize).dot(direction) > 0.0
         };
         if !is_back(hit.triangle) {

@@ -76,7 +76,7 @@ pub struct AmbientEngine<'a> {
 impl<'a> AmbientEngine<'a> {
     /// Builds its hierarchy.
     pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, settings: AmbientSettings) -> Self {
-        let burial = Burial::new(scene, geometry, tracer);
+        let burial = Burial::new(scene, geometry, tracer, settings.distance_m.is_none());
         let blocks = blocks(&settings);
         let draws = Draws::new(settings.seed, settings.rays, &blocks);
         Self { tracer, scatter: Scatter::new(tracer), burial, settings, blocks, draws }
