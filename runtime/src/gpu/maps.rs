@@ -141,9 +141,9 @@ fn ambient_views(
     let sides: Vec<&AmbientSide> = std::iter::once(&ambient.front).chain(&ambient.back).collect();
     let open = || {
         let slices = sides.iter().map(|side| bytemuck::cast_slice(&side.open).to_vec());
-        (2, slices_view(gpu, maps, "ambient occlusion", wgpu::TextureFormat::R16Uint, slices.collect()))
+        (2, slices_view(gpu, maps, "ambient occlusion", wgpu::TextureFormat::R16Uint, &slices.collect::<Vec<_>>()))
     };
-    let in_rgba = |label, slices| slices_view(gpu, maps, label, wgpu::TextureFormat::Rgba16Uint, slices);
+    let in_rgba = |label, slices: Vec<Vec<u8>>| slices_view(gpu, maps, label, wgpu::TextureFormat::Rgba16Uint, &slices);
     match model {
         AmbientModel::Hemisphere => Vec::new(),
         AmbientModel::Openness => vec![open()],
@@ -171,7 +171,7 @@ fn slices_view(
     maps: &PageMaps,
     label: &str,
     format: wgpu::TextureFormat,
-    slices: Vec<Vec<u8>>,
+    slices: &[Vec<u8>],
 ) -> wgpu::TextureView {
     let size = [maps.width, maps.height];
     let texture = texture(gpu, label, size, slices.len() as u32, format);
