@@ -85,7 +85,7 @@ impl EffectPlan {
         let decide = |effect, is_on, why: String| Decision { effect, is_on, why };
         let lane_count = settings.lane_count;
         let is_asked = settings.bakes_intervals;
-        let (path, lamp) = (path.filter(|_| is_asked), lamp.filter(|_| is_asked));
+        let path = path.filter(|_| is_asked);
         let no_sun = if is_asked { no_sun } else { "--only asks for no intervals" };
         let radius_deg = path.map_or(0.0, |p| p.angular_radius_rad.to_degrees());
         let cut = count(scene, |m| matches!(m.alpha, Alpha::Cut { .. }));

@@ -1,9 +1,10 @@
 //! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl`,
 //! `lamp_baked.wgsl` and `ambient_*.wgsl`, around [`sunbake::maps::soft_visibility`].
 
-use crate::light::{LampMoment, Moment};
+use crate::light::{Daylight, LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
 use std::ops::{Add, Mul};
+use sunbake::ambient::harmonics;
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, soft_visibility};
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
@@ -113,8 +114,8 @@ impl<'a> Page<'a> {
 
     /// Light from all around on a surface with this normal, turned to the eye; `is_back`: the eye is behind the surface.
     /// Twin of `ambient_hemisphere.wgsl`, `ambient_openness.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
-    pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, moment: &Moment) -> Vec3 {
-        let light = &moment.daylight;
+    pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, around: &Around) -> Vec3 {
+        let light = around.daylight;
         let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);
         let of_normal = 0.5 + 0.5 * normal.y;
         let Some(ambient) = &self.maps.ambient else { return hemisphere(of_normal) };
@@ -125,7 +126,7 @@ impl<'a> Page<'a> {
         match (&side.sky, &side.bent) {
             (Some(sky), _) => {
                 let light_at = |texel| {
-                    let codes = sky[index(texel)].iter().zip(&moment.sky);
+                    let codes = sky[index(texel)].iter().zip(&around.sky);
                     codes.map(|(&code, &of_sky)| of_sky * decode_signed(code)).sum::<Vec3>()
                 };
                 bilinear(page_uv, last, light_at).max(Vec3::ZERO)
@@ -136,6 +137,23 @@ impl<'a> Page<'a> {
             }
             (None, None) => hemisphere(of_normal) * open(),
         }
+    }
+}
+
+/// What comes from all around at a moment.
+#[derive(Debug, Clone, Copy)]
+pub struct Around<'a> {
+    daylight: &'a Daylight,
+    /// The sky in harmonics; zero where no page wants it.
+    sky: [Vec3; harmonics::COUNT],
+}
+
+impl<'a> Around<'a> {
+    /// As far as these pages want it.
+    pub fn new(moment: &'a Moment, pages: &[Page]) -> Self {
+        let is_wanted = pages.iter().any(|page| page.variant.ambient == AmbientModel::Sky);
+        let sky = if is_wanted { moment.sky_harmonics() } else { Default::default() };
+        Self { daylight: &moment.daylight, sky }
     }
 }
 

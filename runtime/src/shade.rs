@@ -2,7 +2,7 @@
 
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::playback::Page;
+use crate::playback::{Around, Page};
 use crate::shot::Shot;
 use crate::stage::{Corners, Stage};
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -23,9 +23,10 @@ pub fn lit_picture(
         lamp: lamp_visibility.map_or(0.0, |visibility| visibility.pixels[pixel]),
     };
     let pages: Vec<Page> = shot.stage.pages.iter().map(|maps| Page::new(maps, shot.stage.bits, 0.0)).collect();
+    let around = Around::new(moment, &pages);
     let light = |(pixel, hit): (usize, &Option<Hit>)| match hit {
         None => moment.sky_color(shot.ray(pixel).normalize()),
-        Some(hit) => lit_surface(shot, moment, &pages, pixel, hit, &seen(pixel)),
+        Some(hit) => lit_surface(shot, moment, (&pages, &around), pixel, hit, &seen(pixel)),
     };
     let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(light).collect();
     Raster { size: shot.view.size, pixels }
@@ -37,7 +38,14 @@ struct Seen {
     lamp: f32,
 }
 
-fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: &Hit, seen: &Seen) -> Vec3 {
+fn lit_surface(
+    shot: &Shot,
+    moment: &Moment,
+    (pages, around): (&[Page], &Around),
+    pixel: usize,
+    hit: &Hit,
+    seen: &Seen,
+) -> Vec3 {
     let stage = shot.stage;
     let triangle = hit.triangle as usize;
     let ray = shot.ray(pixel);
@@ -51,7 +59,7 @@ fn lit_surface(shot: &Shot, moment: &Moment, pages: &[Page], pixel: usize, hit: 
     let ambient = match stage.chart(stage.geometry.instance[triangle] as usize) {
         Some(chart) => {
             let page_uv = blend(corners.page_uv, weights);
-            pages[chart.page as usize].ambient_light(page_uv, normal, front.dot(ray) > 0.0, moment)
+            pages[chart.page as usize].ambient_light(page_uv, normal, front.dot(ray) > 0.0, around)
         }
         None => moment.daylight.ground_light.lerp(moment.daylight.sky_light, 0.5 + 0.5 * normal.y),
     };

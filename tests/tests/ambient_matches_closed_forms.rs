@@ -134,8 +134,9 @@ fn an_error_that_is_asked_for_is_kept_with_few_rays_where_few_do() {
         for case in cases() {
             let settings = AmbientSettings { error: Some(error), ..rays(4096) };
             let errors = case.errors(settings);
-            within += errors.iter().filter(|e| e.abs() <= error).count();
-            all += errors.len();
+            let of_case = errors.iter().filter(|e| e.abs() <= error).count();
+            assert!(of_case * 100 >= 95 * errors.len(), "{}: {of_case} of {} within {error}", case.name, errors.len());
+            (within, all) = (within + of_case, all + errors.len());
             if case.name == "open plane" {
                 let (_, traced) = ambient_at(&case.traced, &case.points, settings);
                 assert!(traced <= 64 * POINTS as u64, "{traced} rays for an open plane");
@@ -144,6 +145,30 @@ fn an_error_that_is_asked_for_is_kept_with_few_rays_where_few_do() {
         let share = within as f64 / all as f64;
         println!("to {error}: {share:.4} of the points are within");
         assert!(share >= 0.95, "{share} within {error}");
+    }
+}
+
+#[test]
+fn one_hard_texel_among_easy_ones_is_not_passed_over() {
+    // Fifteen points in the open, and one beside a wall and under bars, again and again.
+    let wall = block(Vec3::new(-0.2, 0.0, -40.0), Vec3::new(0.0, 1.5, 40.0));
+    let bars: Vec<[Vec3; 3]> = (0..40)
+        .flat_map(|i| block(Vec3::new(0.1 * i as f32, 1.0, -40.0), Vec3::new(0.1 * i as f32 + 0.04, 1.05, 40.0)))
+        .collect();
+    let traced = Traced::new(ground().soup(&wall).soup(&bars).build());
+    let place = |i: usize| match i % 16 {
+        7 => DVec3::new(0.6, 0.0, 0.02 * (i / 16) as f64),
+        _ => DVec3::new(900.0, 0.0, 0.1 * i as f64),
+    };
+    let points: Vec<AmbientPoint> = (0..4096).map(|i| flat(traced.point_at(place(i), 0))).collect();
+    let truth = openness(&traced, &points[7..8], rays(65_536))[0];
+    for error in [0.05, 0.02] {
+        let found = openness(&traced, &points, AmbientSettings { error: Some(error), ..rays(4096) });
+        let hard: Vec<f64> = found.iter().skip(7).step_by(16).map(|open| (open - truth).abs()).collect();
+        let within = hard.iter().filter(|off| **off <= error).count() as f64 / hard.len() as f64;
+        println!("to {error}: {within:.3} of the hard ones are within");
+        // One draw of the error, or two, are all that tells a lone one: pooling over its neighbours alone kept 59 of 100.
+        assert!(within >= 0.8, "{within} within {error}");
     }
 }
 

@@ -20,8 +20,6 @@ use glam::DVec3;
 const RAYS: u32 = 16;
 /// Seed of their directions: the same for all points.
 const SEED: u32 = 0x5eed;
-/// How many of them may escape, by chance, through what a mesh is not closed by.
-const ESCAPES: u32 = 0;
 /// A front this much farther than a back, as a share of the distance, counts as being at the same place.
 const SAME_PLACE: f64 = 1e-5;
 
@@ -65,16 +63,11 @@ impl<'a> Burial<'a> {
     ) -> bool {
         let frame = Frame::new(normal);
         let origin_m = self.tracer.lift(point.surface.position_m, normal, point.surface.triangle);
-        let mut escaped = 0;
-        for draw in &self.draws {
+        self.draws.iter().all(|draw| {
             *rays += 1;
             let ray = ShadowQuery { origin_m, direction: frame.direction(draw), triangle: point.surface.triangle };
-            escaped += u32::from(!self.meets_back(scatter, room, &ray));
-            if escaped > ESCAPES {
-                return false;
-            }
-        }
-        true
+            self.meets_back(scatter, room, &ray)
+        })
     }
 
     fn meets_back(&self, scatter: &Scatter, room: &mut ScatterRoom, ray: &ShadowQuery) -> bool {

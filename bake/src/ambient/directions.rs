@@ -16,8 +16,8 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Most rays that are sorted together.
 pub(super) const BLOCK: u32 = 256;
-/// How many sequences there are at most. Neighbouring texels never use the same one; those that do are told apart by where
-/// they are, and their errors look like noise.
+/// How many sequences there are at most. Texels that ask together all have different ones; which other texels share one is
+/// left to chance, so that errors look like noise.
 const MOST_SEQUENCES: u32 = 64;
 /// Rays of all sequences together, above which there are fewer sequences.
 const MOST_DRAWS: u32 = 1 << 20;

@@ -1,10 +1,11 @@
 //! The estimate: rays over hemispheres, neighbouring texels together.
 //!
-//! **Error.** With an error E given, a block's rays are doubled until they are enough. The two halves of a texel's rays are
-//! two estimates of equal standing; half their difference has the standard error of their mean. It is pooled over
-//! the block's texels (sixteen neighbours, one degree of freedom each), and they stop together once 1.96 times the pooled
-//! error is below E. Halves of a net err less together than that says, so that more than 95 of 100 texels are within E.
-//! What is smaller than the gaps between the first [`LEAST_RAYS`] rays of sixteen texels may go unseen.
+//! **Error.** With an error E given, a texel's rays are doubled until they are enough. The two halves of its rays are two
+//! estimates of equal standing, and half their difference is one draw from the error of their mean. One draw may be small by
+//! chance; so the one before counts if it was greater, and no texel is believed to err less than the sixteen that ask together do in
+//! the mean. It stops once 1.96 times the standard error so found is below E. Halves of a net err less together
+//! than that says, so that more than 95 of 100 texels are within E; of lone hard ones among open neighbours, four of five. What is smaller than the gaps between the first
+//! [`LEAST_RAYS`] rays may go unseen.
 
 use super::AmbientSettings;
 use super::buried::Burial;
@@ -26,6 +27,9 @@ const RUN: usize = 512;
 const LEAST_RAYS: u32 = 32;
 /// Standard errors that hold 95 of 100 of a normal distribution.
 const CONFIDENCE: f64 = 1.96;
+/// How much less variance twice the rays leave, which makes the halves' difference before this one comparable: 2^-1.5 in
+/// the best case, taken as a half.
+const EARLIER: f64 = 0.5;
 /// Openness up to which a texel is looked at for being buried.
 const DARK: f64 = 0.1;
 
@@ -60,6 +64,8 @@ pub struct Estimates {
     pub buried: Vec<bool>,
     /// Rays traced.
     pub rays: u64,
+    /// Sides of texels whose rays ran out before their error was small enough.
+    pub unsettled: u64,
 }
 
 /// Estimates ambient light.
@@ -82,9 +88,15 @@ impl<'a> AmbientEngine<'a> {
         Self { tracer, scatter: Scatter::new(tracer), burial, settings, blocks, draws }
     }
 
-    /// Whether a point lies inside a solid.
-    pub fn is_point_buried(&self, room: &mut ScatterRoom, point: &AmbientPoint) -> bool {
-        self.burial.is_buried(&self.scatter, room, point, &mut 0)
+    /// Of points that stand for one place together, adds those outside all solids, or all of them where there is none: what
+    /// lies inside would darken the others.
+    pub fn add_visible(&self, points: impl Iterator<Item = AmbientPoint> + Clone, to: &mut Vec<AmbientPoint>) {
+        let (mut room, before) = (ScatterRoom::default(), to.len());
+        let is_seen = |point: &AmbientPoint| !self.burial.is_buried(&self.scatter, &mut room, point, &mut 0);
+        to.extend(points.clone().filter(is_seen));
+        if to.len() == before {
+            to.extend(points);
+        }
     }
 
     /// The settings.
@@ -94,8 +106,9 @@ impl<'a> AmbientEngine<'a> {
 }
 
 /// Asks about texels 0 to `count`, on all threads of the current pool; neighbours should follow one another. `texel` adds
-/// the points of one, on which its rays are spread. Which directions they take follows from its place in the order. Answers come in that order, run by run. `on_progress` gets the number of texels that were done and returns false
-/// to stop; then there is no answer.
+/// the points of one, one at least, on which its rays are spread. Which directions they take follows from its place in the
+/// order. Answers come in that order, run by run. `on_progress` gets the number of texels that were done and returns false to
+/// stop; then there is no answer.
 pub fn find_ambient(
     engine: &AmbientEngine,
     count: usize,
@@ -127,11 +140,13 @@ fn blocks(settings: &AmbientSettings) -> Vec<u32> {
     blocks
 }
 
-/// A number for the directions of the texel at a place in the order: those of a block are all different.
+/// A number for the directions of the texel at a place in the order: those of a block are all different, and blocks start
+/// anywhere (a finaliser of MurmurHash3: Appleby, 2011), so that equal ones lie in no pattern.
 fn seed_of(index: usize) -> u32 {
     let (block, texel) = ((index / TOGETHER) as u32, (index % TOGETHER) as u32);
-    // Low bits of a product are as orderly as its factor's; high bits are not.
-    (block.wrapping_mul(0x9e37_79b9) >> 16).wrapping_add(texel)
+    let mut mixed = (block ^ block >> 16).wrapping_mul(0x85eb_ca6b);
+    mixed = (mixed ^ mixed >> 13).wrapping_mul(0xc2b2_ae35);
+    (mixed ^ mixed >> 16).wrapping_add(texel)
 }
 
 /// What is used anew by every block of texels.
@@ -153,6 +168,10 @@ struct Texel {
     tally: Tally,
     /// Sum of the first half of the rays, and how many those are.
     half: (f64, u32),
+    /// Half the difference of the last two halves, if there were any.
+    apart: Option<f64>,
+    /// Whether no more rays are wanted on the side at hand.
+    is_done: bool,
 }
 
 /// A point of a texel on one of its sides.
@@ -199,6 +218,8 @@ impl Room {
                 seats: Vec::new(),
                 tally: Tally::default(),
                 half: (0.0, 0),
+                apart: None,
+                is_done: false,
             };
             self.texels.push(texel);
         }
@@ -213,14 +234,14 @@ impl AmbientEngine<'_> {
     /// Answers for the texels that were gathered.
     fn ask(&self, room: &mut Room, answers: &mut Estimates) {
         let first = answers.front.len();
-        self.ask_side(room, 0, &mut answers.rays);
+        self.ask_side(room, 0, answers);
         for index in 0..room.texels.len() {
             let estimate = self.estimate(&room.texels[index].tally);
             answers.front.push(estimate);
             answers.buried.push(self.is_buried(room, index, &estimate, &mut answers.rays));
         }
         if (0..room.texels.len()).any(|index| room.is_double_sided(index)) {
-            self.ask_side(room, 1, &mut answers.rays);
+            self.ask_side(room, 1, answers);
             for index in (0..room.texels.len()).filter(|&index| room.is_double_sided(index)) {
                 answers.back.push(((first + index) as u32, self.estimate(&room.texels[index].tally)));
             }
@@ -236,7 +257,7 @@ impl AmbientEngine<'_> {
         room.points[points].iter().all(|point| self.burial.is_buried(&self.scatter, &mut room.walk, point, rays))
     }
 
-    fn ask_side(&self, room: &mut Room, side: usize, rays: &mut u64) {
+    fn ask_side(&self, room: &mut Room, side: usize, Estimates { rays, unsettled, .. }: &mut Estimates) {
         let sign = if side == 0 { 1.0 } else { -1.0 };
         for texel in &mut room.texels {
             let seat = |point: &AmbientPoint| {
@@ -254,14 +275,21 @@ impl AmbientEngine<'_> {
             texel.seats.clear();
             texel.seats.extend(points.iter().filter(|_| is_asked).map(seat));
             (texel.tally, texel.half) = (Tally::default(), (0.0, 0));
+            (texel.apart, texel.is_done) = (None, !is_asked);
         }
         let mut traced = 0;
         for &count in &self.blocks {
             self.trace(room, side, traced, count as usize);
             traced += count;
-            if self.settings.error.is_some_and(|error| traced.is_power_of_two() && is_within(room, traced, error)) {
+            if let Some(error) = self.settings.error.filter(|_| traced.is_power_of_two()) {
+                judge(&mut room.texels, traced, error);
+            }
+            if room.texels.iter().all(|texel| texel.is_done) {
                 break;
             }
+        }
+        if self.settings.error.is_some() {
+            *unsettled += room.texels.iter().filter(|texel| !texel.is_done).count() as u64;
         }
         *rays += room.texels.iter().map(|texel| u64::from(texel.tally.count)).sum::<u64>();
     }
@@ -273,7 +301,7 @@ impl AmbientEngine<'_> {
         for cell in 0..cells {
             queries.clear();
             let mut asking = [0; TOGETHER];
-            for (index, texel) in texels.iter().enumerate().filter(|(_, texel)| !texel.seats.is_empty()) {
+            for (index, texel) in texels.iter().enumerate().filter(|(_, texel)| !texel.is_done) {
                 let draw: &Draw = &self.draws.of(texel.seed)[first as usize + cell];
                 let seat = &texel.seats[(draw.pick * texel.seats.len() as f32) as usize];
                 let direction = seat.frame.direction(draw);
@@ -334,19 +362,27 @@ impl Tally {
     }
 }
 
-/// Whether the error of the texels' means is small enough, by how far the halves of their rays are apart. Notes the sums
-/// that will be the first half.
-fn is_within(room: &mut Room, traced: u32, error: f64) -> bool {
-    let asked = room.texels.iter().filter(|texel| !texel.seats.is_empty());
-    let squares = asked.map(|texel| {
-        let (free, count) = texel.half;
-        let first = free / f64::from(count.max(1));
-        let second = (texel.tally.free - free) / f64::from((texel.tally.count - count).max(1));
-        (0.5 * (first - second)).powi(2)
-    });
-    let (sum, count) = squares.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
-    for texel in &mut room.texels {
+/// Notes which of the texels that ask together have rays enough.
+fn judge(texels: &mut [Texel], traced: u32, error: f64) {
+    let mut asking: Vec<&mut Texel> = texels.iter_mut().filter(|texel| !texel.is_done).collect();
+    if traced > LEAST_RAYS {
+        let squares: Vec<f64> = asking.iter().map(|texel| apart(texel).powi(2)).collect();
+        let pooled = squares.iter().sum::<f64>() / (squares.len() as f64).max(1.0);
+        for (texel, &now) in asking.iter_mut().zip(&squares) {
+            let own = texel.apart.map_or(now, |earlier| now.max(EARLIER * earlier * earlier));
+            texel.is_done = CONFIDENCE * own.max(pooled).sqrt() <= error;
+            texel.apart = Some(now.sqrt());
+        }
+    }
+    for texel in asking {
         texel.half = (texel.tally.free, texel.tally.count);
     }
-    traced > LEAST_RAYS && CONFIDENCE * (sum / f64::from(count.max(1))).sqrt() <= error
+}
+
+/// Half the difference between the means of the two halves of a texel's rays.
+fn apart(texel: &Texel) -> f64 {
+    let (free, count) = texel.half;
+    let first = free / f64::from(count.max(1));
+    let second = (texel.tally.free - free) / f64::from((texel.tally.count - count).max(1));
+    0.5 * (first - second).abs()
 }

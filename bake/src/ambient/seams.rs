@@ -27,6 +27,8 @@ const MOST_APART: f64 = 0.25;
 const SAME_PLACE_TEXELS: f64 = 1e-3;
 /// How strongly a texel that stands for a surface holds on to its value, and one of the gutter.
 const HOLD: [f64; 2] = [0.05, 0.0005];
+/// How many edges at the same place are looked at for the next of one surface.
+const NEXT: usize = 16;
 /// Most points along an edge.
 const MOST_POINTS: f64 = 4096.0;
 const ITERATIONS: usize = 60;
@@ -84,8 +86,9 @@ impl Seams {
         let mut points = Vec::new();
         for edges in edges_by_place(scene, geometry, normals, atlas, page).values() {
             for (k, one) in edges.iter().enumerate() {
-                let others = edges[k + 1..].iter().filter(|other| is_cut(one, other));
-                others.for_each(|other| points.extend(along(one, other, size)));
+                // Where many lie at one place, each agrees with the next, and so with all.
+                let next = edges[k + 1..].iter().take(NEXT).find(|other| is_cut(one, other));
+                points.extend(next.into_iter().flat_map(|other| along(one, other, size)));
             }
         }
         // Maps have no order of their own, and sums depend on it.
@@ -222,8 +225,7 @@ fn edges_by_place(
     let size = atlas.pages[page as usize];
     let place = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut edges: HashMap<[Place; 2], Vec<Edge>> = HashMap::new();
-    for (instance, placement) in atlas.placements.iter().enumerate().filter(|(_, p)| p.page == page && !p.is_empty()) {
-        let _ = placement;
+    for (instance, _) in atlas.placements.iter().enumerate().filter(|(_, p)| p.page == page && !p.is_empty()) {
         let layout = &atlas.layouts[scene.instances[instance].mesh];
         let first = geometry.first_triangle[instance] as usize;
         for (triangle, vertices) in (first..).zip(layout.indices.chunks_exact(3)) {

@@ -10,38 +10,32 @@
 use super::estimate::{AmbientEngine, AmbientPoint, Estimates, find_ambient};
 use crate::atlas::SurfacePoint;
 use crate::scene::{Geometry, Scene, ShadingNormals};
-use crate::trace::ScatterRoom;
 use std::collections::HashMap;
 
 /// How far a corner's point is moved towards the middle of its triangle.
 const PULL: f64 = 0.125;
 
 /// For each instance, how open each vertex of its mesh is, 0 to 1; of double-sided surfaces, the side that sees more. Instances
-/// that are air have none. `on_progress` gets the number of places that were done, of as many as it is first told, and
-/// returns false to stop; then there is no answer.
+/// that are air read 1. `on_progress` gets the number of places that were done and returns false to stop; then there is no
+/// answer. With it come the rays traced.
 pub fn openness_of_vertices(
     engine: &AmbientEngine,
     scene: &Scene,
     geometry: &Geometry,
     normals: &ShadingNormals,
     on_progress: impl Fn(usize) -> bool + Sync,
-) -> Option<Vec<Vec<f32>>> {
+) -> Option<(Vec<Vec<f32>>, u64)> {
     let mut corners: Vec<Vec<AmbientPoint>> = Vec::new();
     let mut places: Vec<Vec<u32>> = Vec::with_capacity(scene.instances.len());
     for instance in 0..scene.instances.len() {
         places.push(gather(scene, geometry, normals, instance, &mut corners));
     }
-    let texel = |place: usize, points: &mut Vec<AmbientPoint>| {
-        let mut room = ScatterRoom::default();
-        let of_place = &corners[place];
-        points.extend(of_place.iter().filter(|point| !engine.is_point_buried(&mut room, point)));
-        if points.is_empty() {
-            points.extend(of_place);
-        }
-    };
+    let texel =
+        |place: usize, points: &mut Vec<AmbientPoint>| engine.add_visible(corners[place].iter().copied(), points);
     let runs = find_ambient(engine, corners.len(), texel, on_progress)?;
     let open = more_open_sides(&runs);
-    Some(places.into_iter().map(|of_vertices| of_vertices.iter().map(|&place| value(&open, place)).collect()).collect())
+    let of_instance = |places: Vec<u32>| places.iter().map(|&place| value(&open, place)).collect();
+    Some((places.into_iter().map(of_instance).collect(), runs.iter().map(|run| run.rays).sum()))
 }
 
 /// A place without a triangle is open.
@@ -120,16 +114,30 @@ mod tests {
     use crate::trace::Tracer;
     use glam::Vec3;
 
+    fn open_of(scene: &Scene) -> Vec<Vec<f32>> {
+        let geometry = Geometry::new(scene);
+        let tracer = Tracer::new(scene, &geometry);
+        let engine = AmbientEngine::new(scene, &geometry, &tracer, AmbientRequest::with_rays(1024).estimate);
+        openness_of_vertices(&engine, scene, &geometry, &ShadingNormals::new(scene), |_| true).unwrap().0
+    }
+
+    #[test]
+    fn a_vertex_inside_a_solid_reads_nothing_and_takes_nothing_from_the_next() {
+        let ground = block(Vec3::new(-50.0, -9.0, -50.0), Vec3::new(50.0, 0.0, 50.0));
+        let stake = block(Vec3::new(-0.5, -2.0, -0.5), Vec3::new(0.5, 1.0, 0.5));
+        let scene = SceneBuilder::new().soup(&ground).soup(&stake).build();
+        for (position, &open) in scene.meshes[1].positions.iter().zip(&open_of(&scene)[1]) {
+            assert!(if position.y < 0.0 { open == 0.0 } else { open > 0.5 }, "{open} at {position}");
+        }
+    }
+
     #[test]
     fn vertices_on_the_ground_see_half_of_the_sky_and_those_on_top_all_of_it() {
         // Both are solids, and they touch: what lies between them is buried.
         let ground = block(Vec3::new(-500.0, -1.0, -500.0), Vec3::new(500.0, 0.0, 500.0));
         let cube = block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0));
         let scene = SceneBuilder::new().soup(&ground).soup(&cube).build();
-        let geometry = Geometry::new(&scene);
-        let tracer = Tracer::new(&scene, &geometry);
-        let engine = AmbientEngine::new(&scene, &geometry, &tracer, AmbientRequest::with_rays(1024).estimate);
-        let open = openness_of_vertices(&engine, &scene, &geometry, &ShadingNormals::new(&scene), |_| true).unwrap();
+        let open = open_of(&scene);
         for (position, &open) in scene.meshes[1].positions.iter().zip(&open[1]) {
             // No normals: a vertex is the mean of its faces, an upper one of a lid and of two or four walls.
             let expected = if position.y > 1.0 { 0.55..0.85 } else { 0.45..0.53 };

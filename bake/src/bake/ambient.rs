@@ -24,6 +24,9 @@ pub(super) struct Sky<'a> {
 pub(super) struct SkyAccount {
     pub rays: u64,
     pub buried_texels: u64,
+    pub unsettled_texels: u64,
+    /// Points along the edge of a texel, where pages were too large for as many as were asked for.
+    pub supersample: Option<u32>,
     /// Of each page and side, before and after they were healed.
     pub seams: Vec<[Mismatch; 2]>,
 }
@@ -52,7 +55,8 @@ impl PageBaker<'_> {
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         progress.start(Stage::Ambient, 0);
         let find = || openness_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
-        let open = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
+        let (open, rays) = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
+        self.sky_account.rays += rays;
         let write = || writer.write_vertices(&glb::write_vertices(scene, attribute, &open)?).map_err(BakeError::from);
         timed(&mut self.stats.seconds.write, write)?;
         Ok(Some(VertexEntry { file: VERTICES_FILE.into(), attribute: attribute.name().into() }))
@@ -67,14 +71,19 @@ impl PageBaker<'_> {
     ) -> Result<AmbientPage, BakeError> {
         let (scene, geometry, atlas, progress) = (self.scene, self.geometry, self.atlas, self.progress);
         let size = atlas.pages[page];
-        let finer = FinerSamples::new(self, page, samples, sky.request.supersample);
+        let supersample = most_finer(size).min(sky.request.supersample);
+        if supersample < sky.request.supersample {
+            self.sky_account.supersample = Some(supersample);
+        }
+        let finer = FinerSamples::new(self, page, samples, supersample);
         let point = |sample: &Sample| {
             let weights = sample.barycentric.map(f64::from);
             let shading_normal = sky.normals.at(scene, geometry, sample.triangle as usize, weights);
             AmbientPoint { surface: atlas::surface_point(scene, geometry, sample), shading_normal }
         };
-        let texel = |place: usize, points: &mut Vec<AmbientPoint>| {
-            points.extend(finer.of(order[place] as usize, samples).iter().map(point));
+        let texel = |place: usize, points: &mut Vec<AmbientPoint>| match finer.of(order[place] as usize, samples) {
+            [one] => points.push(point(one)),
+            several => sky.engine.add_visible(several.iter().map(point), points),
         };
         let runs = find_ambient(sky.engine, order.len(), texel, |count| {
             progress.advance(count as u64);
@@ -82,6 +91,7 @@ impl PageBaker<'_> {
         })
         .ok_or(BakeError::Cancelled)?;
         let account = &mut self.sky_account;
+        account.unsettled_texels += runs.iter().map(|run| run.unsettled).sum::<u64>();
         account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
         account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
         let mut baked = AmbientPage::new(size, samples, order, &runs, sky.engine.settings());
@@ -99,6 +109,11 @@ impl PageBaker<'_> {
     }
 }
 
+/// How many times finer a page may be sampled: texels of the finer grid are counted in 32 bits.
+fn most_finer(size: PageSize) -> u32 {
+    0x1_0000 / size.width.max(size.height)
+}
+
 /// For each texel of a page, the points that stand for it.
 struct FinerSamples {
     /// Samples of a finer grid, texel by texel of the page.
@@ -112,9 +127,7 @@ impl FinerSamples {
         if finer < 2 {
             return Self { samples: Vec::new(), first: Vec::new() };
         }
-        let PageSize { width, height } = baker.atlas.pages[page];
-        // Texels of the finer grid are counted in 32 bits.
-        let finer = finer.min(0xffff / width.max(height));
+        let width = baker.atlas.pages[page].width;
         let mut samples = atlas::sample_finer(baker.scene, baker.geometry, baker.atlas, page as u32, finer).samples;
         let texel_of = |sample: &Sample| {
             let (x, y) = (sample.texel % (width * finer), sample.texel / (width * finer));
@@ -143,6 +156,29 @@ impl FinerSamples {
     }
 }
 
+/// What a user should know of it.
+pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if entry.unsettled_texels > 0 {
+        let (count, most) = (entry.unsettled_texels, request.estimate.rays);
+        let more = if most < MOST_RAYS { "give a larger --ao-rays" } else { "that is as many as there are" };
+        warnings.push(format!(
+            "{count} texels may still be off by more than --ao-error {} after {most} rays; {more}, or a larger --ao-error",
+            request.estimate.error.unwrap_or_default()
+        ));
+    }
+    if entry.supersample < request.supersample {
+        warnings.push(format!(
+            "pages are too large for --ao-supersample {}: it was {} on some; give a smaller --size for more",
+            request.supersample, entry.supersample
+        ));
+    }
+    warnings
+}
+
+/// Most rays that may be asked for.
+const MOST_RAYS: u32 = 65_536;
+
 /// What the manifest says of it.
 pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEntry {
     let counted = |seams: &Mismatch| (seams.points - seams.differing) as f64;
@@ -154,10 +190,11 @@ pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEn
         rays: request.estimate.rays,
         error: request.estimate.error,
         distance_m: request.estimate.distance_m,
-        supersample: request.supersample,
+        supersample: account.supersample.unwrap_or(request.supersample),
         bits: request.bits.count(),
         rays_traced: account.rays,
         buried_texels: account.buried_texels,
+        unsettled_texels: account.unsettled_texels,
         seams: SeamEntry {
             points: account.seams.iter().map(|[_, after]| after.points).sum(),
             differing: account.seams.iter().map(|[_, after]| after.differing).sum(),

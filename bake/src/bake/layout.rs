@@ -78,6 +78,8 @@ pub(super) const BYTES_PER_SAMPLE: u64 = 100;
 const BYTES_PER_LANE: u64 = 60;
 /// Bytes that a texel of a loss map takes: its numbers, and their copies while they are written.
 const BYTES_PER_LOST: u64 = 24;
+/// Bytes that a triangle's corners take more while vertices are asked about the sky.
+const BYTES_PER_CORNERS: u64 = 300;
 /// Bytes a triangle takes: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
@@ -99,11 +101,15 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
     let lamps = u64::from(settings.lamp.is_some());
     let lanes = settings.lane_count as u64 + lamps;
     // Codes are held twice while they are written; two layers are what a scene usually needs.
-    let codes = texels * 16 * settings.layer_cap.min(2) as u64 * 2 * lanes;
-    let triangles = scene.triangle_count() as u64 * BYTES_PER_TRIANGLE;
+    let layers = if settings.bakes_intervals { settings.layer_cap.min(2) as u64 } else { 0 };
+    let codes = texels * 16 * layers * 2 * lanes;
+    let at_vertices = settings.ambient.is_some_and(|request| request.vertices.is_some());
+    let a_triangle = BYTES_PER_TRIANGLE + if at_vertices { BYTES_PER_CORNERS } else { 0 };
+    let triangles = scene.triangle_count() as u64 * a_triangle;
+    let a_sample = if settings.bakes_intervals { BYTES_PER_SAMPLE } else { size_of::<Sample>() as u64 + 4 };
     let loss_map = if settings.loss_map { BYTES_PER_LOST } else { 0 };
     let ambient = settings.ambient.as_ref().map_or(0, |request| ambient_bytes(scene, request));
-    let needed = codes + texels * (BYTES_PER_SAMPLE + BYTES_PER_LANE * (lanes - 1) + loss_map + ambient) + triangles;
+    let needed = codes + texels * (a_sample + BYTES_PER_LANE * (lanes - 1) + loss_map + ambient) + triangles;
     if needed <= settings.max_memory_bytes {
         return Ok(());
     }

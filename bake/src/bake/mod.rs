@@ -252,6 +252,8 @@ fn bake_prepared(
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warnings(&manifest, settings));
+    let of_sky = manifest.ambient.as_ref().zip(settings.ambient.as_ref());
+    warnings.extend(of_sky.into_iter().flat_map(|(entry, request)| ambient::warnings(entry, request)));
     Ok(BakeReport { manifest, warnings })
 }
 

@@ -201,7 +201,7 @@ pub struct AmbientArgs {
     pub ao_distance: Option<f64>,
     /// Stop a texel's rays once its error is below E with 95 % confidence, 0.001 to 0.5. [default: all have as many]
     ///
-    /// --ao-rays is then the most, 4096 unless given. What is open or closed all around takes 64.
+    /// The confidence is that of many texels: 95 of 100 are within. --ao-rays is then the most, 4096 unless given. What is open or closed all around takes 64.
     #[arg(long, value_name = "E", value_parser = parse_error)]
     pub ao_error: Option<f64>,
     /// Spread a texel's rays over N by N points of its surface, 1 to 8.
@@ -217,7 +217,7 @@ pub struct AmbientArgs {
     pub bent: bool,
     /// Bake how any sky adds up at each texel: sh2, nine coefficients of spherical harmonics.
     ///
-    /// A sky whose brightness changes through the day then lights the scene rightly. Takes 54 bytes a texel.
+    /// A sky whose brightness changes through the day then lights the scene rightly. Takes 18 bytes a texel and side.
     #[arg(long, value_name = "BASIS")]
     pub sky: Option<SkyBasis>,
     /// Also write vertices.glb, with ambient occlusion at its vertices as COLOR_0 or _AO.

@@ -87,6 +87,10 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
              --engine bisect:N"
         )));
     }
+    let bakes_intervals = args.only.is_empty() || args.only.contains(&Only::Intervals);
+    if let Some(flag) = times_flag(args).filter(|_| !bakes_intervals) {
+        return Err(Failure::usage(format!("{flag} is about times and --only asks for none: add intervals to --only")));
+    }
     let lamp = args.sun.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
     Ok(BakeSettings {
         lamp,
@@ -97,7 +101,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
-        bakes_intervals: args.only.is_empty() || args.only.contains(&Only::Intervals),
+        bakes_intervals,
         ambient: ambient(args, preset.ambient)?,
         loss_map: args.loss_map,
         engine,
@@ -134,6 +138,21 @@ fn ambient(args: &BakeArgs, preset: Option<AmbientRequest>) -> Result<Option<Amb
     request.vertices = given.ao_vertices;
     request.exr = given.exr;
     Ok(Some(request))
+}
+
+/// A flag about times, if one is given.
+fn times_flag(args: &BakeArgs) -> Option<&'static str> {
+    let cost = &args.cost;
+    let flags = [
+        ("--lamp", args.sun.lamp.is_some()),
+        ("--bits", cost.bits.is_some()),
+        ("--layers", cost.layers.is_some()),
+        ("--lanes", cost.lanes > 1),
+        ("--engine", cost.engine.is_some()),
+        ("--edge-seconds", cost.edge_seconds.is_some()),
+        ("--loss-map", args.loss_map),
+    ];
+    flags.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)
 }
 
 /// A flag about ambient light, if one is given.

@@ -160,7 +160,11 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
     };
     let within = entry.distance_m.map_or(String::new(), |m| format!(", within {m} m"));
     let speed = millions / seconds.max(1e-9);
-    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried", entry.buried_texels)
+    let unsettled = match entry.unsettled_texels {
+        0 => String::new(),
+        count => format!(", {count} not to that error"),
+    };
+    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unsettled}", entry.buried_texels)
 }
 
 fn seams(entry: &SeamEntry) -> String {
@@ -249,5 +253,6 @@ fn engine(manifest: &Manifest) -> String {
 fn cost(manifest: &Manifest) -> String {
     let total: f64 = by_stage(&manifest.stats.seconds).iter().map(|(_, s)| s).sum();
     let mib = manifest.stats.bytes as f64 / f64::from(1 << 20);
-    format!("{total:.1} s ({:.1} s of it tracing light), {mib:.1} MiB", manifest.stats.seconds.visibility)
+    let seconds = &manifest.stats.seconds;
+    format!("{total:.1} s ({:.1} s of it tracing light), {mib:.1} MiB", seconds.visibility + seconds.ambient)
 }

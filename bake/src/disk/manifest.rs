@@ -217,6 +217,9 @@ pub struct AmbientEntry {
     pub rays_traced: u64,
     /// Texels inside a solid. Those beside one that can be seen hold its value, the others 0.
     pub buried_texels: u64,
+    /// Sides of texels that may still be off by more than `error`, because there were no more rays.
+    #[serde(default)]
+    pub unsettled_texels: u64,
     /// How far apart the two sides of cuts are.
     pub seams: SeamEntry,
     /// The scene with openness at its vertices, if asked for.

@@ -111,6 +111,7 @@ pub fn read_manifest(folder: &Path) -> Result<Manifest, ReadError> {
 /// Every file a manifest names must lie in its own folder.
 fn check_names(manifest: &Manifest) -> Result<(), String> {
     let mut names = vec![&manifest.scene.file];
+    names.extend(manifest.ambient.iter().flat_map(|ambient| &ambient.vertices).map(|vertices| &vertices.file));
     for atlas in &manifest.atlases {
         names.extend(atlas.ao.iter().chain(&atlas.bent).chain(&atlas.bent_back).chain(&atlas.ambient_exr));
         names.extend(atlas.sky.iter().flat_map(|sky| sky.front.iter().chain(sky.back.iter().flatten())));

@@ -35,21 +35,20 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// Adds vectors of two, three or four numbers, one a vertex.
+    /// Adds vectors of one, two, three or four numbers, one a vertex.
     pub fn add_vectors<const N: usize>(&mut self, vectors: impl Iterator<Item = [f32; N]>) -> usize {
         let start = self.bytes.len();
         let view = self.add_targeted_view(ARRAY_BUFFER, vectors.flatten().flat_map(f32::to_le_bytes));
         let count = (self.bytes.len() - start) / (4 * N);
         self.add_accessor(json!({
-            "bufferView": view, "componentType": 5126, "count": count, "type": format!("VEC{N}"),
+            "bufferView": view, "componentType": 5126, "count": count,
+            "type": if N == 1 { "SCALAR".into() } else { format!("VEC{N}") },
         }))
     }
 
     /// Adds numbers, one a vertex.
     pub fn add_scalars(&mut self, numbers: impl Iterator<Item = f32>) -> usize {
-        let accessor = self.add_vectors(numbers.map(|number| [number]));
-        self.accessors[accessor]["type"] = json!("SCALAR");
-        accessor
+        self.add_vectors(numbers.map(|number| [number]))
     }
 
     /// Adds positions, with the bounds that glTF demands of them.

@@ -123,7 +123,7 @@ fn files_that_are_not_there_are_named() {
 
 #[test]
 fn options_that_make_no_sense_are_refused() {
-    let cases: [(&[&str], i32, &[&str]); 25] = [
+    let cases: [(&[&str], i32, &[&str]); 26] = [
         (&["--place", "91,0"], 1, &["latitude 91", "-90..=90"]),
         (&["--place", "0,181"], 1, &["longitude 181", "-180..=180"]),
         (&["--place", "nan,0"], 1, &["not a place", "48.2,16.4"]),
@@ -139,6 +139,7 @@ fn options_that_make_no_sense_are_refused() {
         (&["--ao-error", "2"], 1, &["0.001 to 0.5"]),
         (&["--ao-distance=-1"], 1, &["metres"]),
         (&["--ao-vertices", "NORMAL"], 1, &["COLOR_0 or _AO"]),
+        (&["--only", "ao", "--loss-map"], 1, &["add intervals to --only"]),
         (&["--only", "intervals", "--bent"], 1, &["--bent", "add ao to --only"]),
         (&["--bits", "9"], 1, &["8 or 16"]),
         (&["--engine", "rays:1"], 1, &["2 to 65536"]),

@@ -71,7 +71,7 @@ impl FrameBindings {
             gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of::<LampUniform>(&lamp));
         }
         if let Some(buffer) = &self.sky {
-            let sky = SkyUniform { coefficients: moment.sky.map(|c| c.extend(0.0).to_array()) };
+            let sky = SkyUniform { coefficients: moment.sky_harmonics().map(|c| c.extend(0.0).to_array()) };
             gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&sky));
         }
     }

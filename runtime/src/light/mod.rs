@@ -20,7 +20,6 @@ pub use tone::{codes_from_display, display_from_light};
 
 use crate::camera::View;
 use glam::Vec3;
-use sunbake::ambient::harmonics;
 use sunbake::sun::SunPath;
 use sunbake_shaders::FrameUniform;
 
@@ -54,8 +53,6 @@ pub struct Moment {
     pub daylight: Daylight,
     /// A lamp in the scene, if one is to be seen.
     pub lamp: Option<LampMoment>,
-    /// What the sky and the ground send, in spherical harmonics: see [`Moment::sky_harmonics`].
-    pub sky: [Vec3; harmonics::COUNT],
 }
 
 /// Light and its colours, linear.
@@ -82,7 +79,7 @@ impl Moment {
     pub fn new(path: Option<&SunPath>, t: f64) -> Self {
         let Some(path) = path else {
             let daylight = Daylight { sun_light: Vec3::ZERO, glow: Vec3::ZERO, ..Daylight::at_height(-0.1) };
-            return Self::with_sky(Self {
+            return Self {
                 t: t as f32,
                 width_t: 0.0,
                 sun_direction: Vec3::ZERO,
@@ -90,12 +87,11 @@ impl Moment {
                 discs_per_radian: POINT,
                 daylight,
                 lamp: None,
-                sky: Default::default(),
-            });
+            };
         };
         let direction = path.direction(t);
         let radius = path.angular_radius_rad;
-        Self::with_sky(Self {
+        Self {
             t: t as f32,
             width_t: path.width_t(t) as f32,
             sun_direction: direction.as_vec3(),
@@ -103,12 +99,7 @@ impl Moment {
             discs_per_radian: if radius > 0.0 { (0.5 / radius) as f32 } else { POINT },
             daylight: Daylight::at_height(direction.y as f32),
             lamp: None,
-            sky: Default::default(),
-        })
-    }
-
-    fn with_sky(self) -> Self {
-        Self { sky: self.sky_harmonics(), ..self }
+        }
     }
 
     /// The same moment without the sun's own light; the sky stays.
@@ -119,7 +110,7 @@ impl Moment {
     /// The same moment with nothing but what comes straight from the sun and the lamp. What is behind the scene stays.
     pub fn without_sky(self) -> Self {
         let daylight = Daylight { sky_light: Vec3::ZERO, ground_light: Vec3::ZERO, ..self.daylight };
-        Self { daylight, sky: Default::default(), ..self }
+        Self { daylight, ..self }
     }
 
     /// The same moment with a lamp in the scene.

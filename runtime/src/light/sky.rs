@@ -36,7 +36,7 @@ impl Moment {
     /// Above the horizon it has the sky's own colours, but not the sun's disc, so scaled that level ground receives just
     /// [`super::Daylight::sky_light`]; below it, [`super::Daylight::ground_light`] from everywhere. In the open, a surface that looks up or down is therefore
     /// lit as by the plain model of hemispheres; one that looks aside knows which way the sun is.
-    pub(super) fn sky_harmonics(&self) -> [Vec3; harmonics::COUNT] {
+    pub fn sky_harmonics(&self) -> [Vec3; harmonics::COUNT] {
         let mut above = [Vec3::ZERO; harmonics::COUNT];
         let mut below = [0.0f32; harmonics::COUNT];
         let mut on_level_ground = Vec3::ZERO;
