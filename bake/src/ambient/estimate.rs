@@ -2,10 +2,10 @@
 //!
 //! **Error.** With an error E given, a texel's rays are doubled until they are enough. The two halves of its rays are two
 //! estimates of equal standing, and half their difference is one draw from the error of their mean. One draw may be small by
-//! chance; so the one before counts if it was greater, and no texel is believed to err less than the sixteen that ask together do in
-//! the mean. It stops once 1.96 times the standard error so found is below E. Halves of a net err less together
-//! than that says, so that more than 95 of 100 texels are within E; of lone hard ones among open neighbours, four of five. What is smaller than the gaps between the first
-//! [`LEAST_RAYS`] rays may go unseen.
+//! chance; so the one before counts if it was greater, and no texel is believed to err less than the sixteen that ask
+//! together do in the mean. It stops once 1.96 times the standard error so found is below E. Halves of a net err less
+//! together than that says, so that more than 95 of 100 texels are within E; of lone hard ones among open neighbours, four of
+//! five. What is smaller than the gaps between the first [`LEAST_RAYS`] rays may go unseen.
 
 use super::AmbientSettings;
 use super::buried::Burial;
