@@ -323,7 +323,8 @@ fn cards_with_two_sides_hold_what_each_of_them_sees() {
     let card = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 0.5);
     let scene = SceneBuilder::new().soup_of(&card, two_sided).soup(&ground(400.0)).build();
     let density = BakeSettings { density: Density::TexelsPerMetre(0.5), page_size_texels: 1024, ..settings() };
-    let (set, texels) = bake(&scene, &density);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (set, texels) = baked(&scene, &density, folder.path());
     let of_card: Vec<&Texel> = texels.iter().filter(|texel| texel.double_sided).collect();
     assert!(!of_card.is_empty());
     for texel in of_card {

@@ -2,9 +2,9 @@
 //!
 //! Theory: a sequence in the unit square, carried onto the disc by Shirley and Chiu's map ("A low distortion map between
 //! disk and square", *Journal of Graphics Tools* 2(3), 1997) and up onto the hemisphere, has a density that falls with the
-//! cosine (Malley's method). The sequence is Sobol's first two dimensions, Owen-scrambled with another seed for each of a number of texels
+//! cosine (Malley's method). The sequence is Sobol's first two dimensions, Owen-scrambled with one of a number of seeds
 //! (Burley, "Practical hash-based Owen scrambling", *Journal of Computer Graphics Techniques* 9(4), 2020): any aligned block
-//! of 2^m of them has one point in every elementary box of area 2^-m, so that the error of a mean falls faster than that of
+//! of 2^m of its points has one in every elementary box of area 2^-m, so that the error of a mean falls faster than that of
 //! independent points.
 //!
 //! Practice: the same property says where a block's points lie before they are drawn. Sorted by the cell that each is
