@@ -1,4 +1,4 @@
-//! Seconds of every stage of a bake, with texels and rays a second: `cargo bench -p sunbake --bench stages`.
+//! Seconds of every stage of a bake of times (ambient light has a bench of its own), with texels and rays a second: `cargo bench -p sunbake --bench stages`.
 //!
 //! Our own scene, and three shared ones where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
 //! repository). Arguments after `--` set the page size, and for another engine than the exact one the number of suns:
@@ -44,8 +44,12 @@ fn main() {
 fn row(file: &Path, page_size_texels: u32, engine: EngineChoice) {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let target = std::env::temp_dir().join(format!("sunbake-bench-{}-{name}", std::process::id()));
-    let settings =
-        BakeSettings { page_size_texels, engine, ..BakeSettings::standard(SunRequest::Day(common::summer_day())) };
+    let settings = BakeSettings {
+        page_size_texels,
+        engine,
+        ambient: None,
+        ..BakeSettings::standard(SunRequest::Day(common::summer_day()))
+    };
     match sunbake::bake(file, &target, true, &settings, &Silent) {
         Err(error) => println!("{name:<20} {error}"),
         Ok(report) => {

@@ -4,7 +4,7 @@ use crate::light::{LampMoment, Moment};
 use crate::playback::page_variant;
 use crate::sides::{Sides, sides};
 use crate::texture::MipChain;
-use glam::{DMat3, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -12,7 +12,7 @@ use sunbake::disk::manifest::InstanceEntry;
 use sunbake::lamp::LampPath;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
-use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene};
+use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene, ShadingNormals};
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
 use sunbake_shaders::AmbientModel;
@@ -37,7 +37,7 @@ pub struct Stage {
     /// For each instance, where its texels lie; none where it has none (and is not drawn).
     charts: Vec<Option<Chart>>,
     /// For each instance, unit shading normals in bake space from those in object space.
-    normal_from_object: Vec<DMat3>,
+    normals: ShadingNormals,
     /// For each triangle, the sides that are drawn.
     sides: Vec<Sides>,
     /// For each image, its levels of detail, if a material draws it as a base colour.
@@ -107,14 +107,13 @@ impl Stage {
         path: Option<SunPath>,
     ) -> Result<Self, StageError> {
         let charts = charts(&scene, instances, pages.len())?;
-        let normal_from_object =
-            scene.instances.iter().map(|i| DMat3::from_mat4(i.bake_from_object).inverse().transpose()).collect();
+        let normals = ShadingNormals::new(&scene);
         let geometry = Geometry::new(&scene);
         let is_drawn = |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Air;
         let sides = sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let tracer = OnceLock::new();
-        Ok(Self { scene, geometry, bits, pages, path, lamp: None, charts, normal_from_object, sides, mips, tracer })
+        Ok(Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer })
     }
 
     /// The same stage with the lamp whose times are in the pages; its path in world space.
@@ -223,7 +222,7 @@ impl Stage {
     }
 
     fn shading_normal(&self, instance: usize, object: Vec3, front: Vec3) -> Vec3 {
-        let normal = (self.normal_from_object[instance] * object.as_dvec3()).normalize_or_zero();
+        let normal = self.normals.turned(instance, object);
         if normal == glam::DVec3::ZERO { front } else { normal.as_vec3() }
     }
 

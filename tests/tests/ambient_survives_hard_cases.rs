@@ -40,6 +40,13 @@ fn ground(half: f32) -> Vec<[Vec3; 3]> {
     floor(Vec2::splat(-half), Vec2::splat(half), 0.0)
 }
 
+/// A ball of `20 * 4^level` facets with the normals of a round one.
+fn ball(level: u32) -> Mesh {
+    let positions: Vec<Vec3> = icosphere(level).iter().flatten().copied().collect();
+    let indices = (0..positions.len() as u32).collect();
+    Mesh { indices, normals: Some(positions.clone()), positions, ..Mesh::default() }
+}
+
 /// A post, a slab and a stone on a floor.
 fn still_life(matrix: DMat4) -> Scene {
     let soup: Vec<[Vec3; 3]> = [
@@ -177,16 +184,8 @@ fn b8_single_sides_hide_from_behind_and_an_open_box_is_no_solid() {
 
 #[test]
 fn b8_a_ball_of_80_facets_has_no_terminator() {
-    let facets = icosphere(1);
-    let positions: Vec<Vec3> = facets.iter().flatten().copied().collect();
-    let ball = Mesh {
-        indices: (0..positions.len() as u32).collect(),
-        normals: Some(positions.clone()),
-        positions,
-        ..Mesh::default()
-    };
     let up = DMat4::from_translation(DVec3::Y * 1.02);
-    let scene = SceneBuilder::new().mesh_of(ball, opaque(), &[up]).soup(&ground(2000.0)).build();
+    let scene = SceneBuilder::new().mesh_of(ball(1), opaque(), &[up]).soup(&ground(2000.0)).build();
     let traced = Traced::new(scene);
     let normals = sunbake::scene::ShadingNormals::new(&traced.scene);
     let point = |i: usize| {
@@ -276,15 +275,7 @@ fn b11_mirrored_stretched_and_sheared_solids_alone_read_one() {
         DMat4::from_cols_array(&[1.0, 0.3, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.2, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     let matrices = [DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), DMat4::from_scale(DVec3::new(1.0, 4.0, 0.2)), shear];
     for matrix in matrices {
-        let facets = icosphere(1);
-        let positions: Vec<Vec3> = facets.iter().flatten().copied().collect();
-        let ball = Mesh {
-            indices: (0..positions.len() as u32).collect(),
-            normals: Some(positions.clone()),
-            positions,
-            ..Mesh::default()
-        };
-        let (set, texels) = bake(&SceneBuilder::new().mesh_of(ball, opaque(), &[matrix]).build(), &settings());
+        let (set, texels) = bake(&SceneBuilder::new().mesh_of(ball(1), opaque(), &[matrix]).build(), &settings());
         assert!(texels.len() > 1000 && texels.iter().all(|texel| open(texel) == 1.0), "{matrix}");
         assert_eq!(set.manifest.ambient.unwrap().buried_texels, 0);
     }
@@ -439,16 +430,9 @@ fn filtered(open: &[u16], [width, height]: [usize; 2], uv: Vec2) -> f64 {
 #[test]
 fn no_seam_shows_where_charts_meet() {
     // A round stone of many charts, half in the shade of a slab, and a bent strip.
-    let facets = icosphere(3);
-    let positions: Vec<Vec3> = facets.iter().flatten().copied().collect();
-    let stone = Mesh {
-        indices: (0..positions.len() as u32).collect(),
-        normals: Some(positions.clone()),
-        positions,
-        ..Mesh::default()
-    };
     let slab = block(Vec3::new(-2.0, 1.2, -0.5), Vec3::new(0.3, 1.4, 2.0));
-    let scene = SceneBuilder::new().mesh_of(stone, opaque(), &[DMat4::IDENTITY]).soup(&slab).soup(&ground(3.0)).build();
+    let scene =
+        SceneBuilder::new().mesh_of(ball(3), opaque(), &[DMat4::IDENTITY]).soup(&slab).soup(&ground(3.0)).build();
     let request = AmbientRequest::with_rays(64);
     let settings = BakeSettings { page_size_texels: 256, ambient: Some(request), ..settings() };
     let folder = tempfile::tempdir().expect("a temporary folder");

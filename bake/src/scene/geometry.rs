@@ -85,6 +85,6 @@ impl Geometry {
     /// Whether the triangle blocks light at all (its material is not air, its corners do not coincide).
     pub fn is_solid(&self, scene: &Scene, triangle: usize) -> bool {
         let instance = self.instance[triangle] as usize;
-        scene.material(instance).alpha != Alpha::Air && self.normal(triangle) != DVec3::ZERO
+        self.is_solid_instance(scene, instance) && self.normal(triangle) != DVec3::ZERO
     }
 }

@@ -1,7 +1,7 @@
 //! Shading normals in bake space: which way a surface is meant to face where its triangles only approximate it.
 
 use super::{Geometry, Scene};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 /// Below this cosine between the two, a shading normal is not believed and the triangle's own is taken.
 const LEAST_COSINE: f64 = 0.1;
@@ -19,6 +19,11 @@ impl ShadingNormals {
         Self { normal_from_object: scene.instances.iter().map(inverse_transpose).collect() }
     }
 
+    /// A normal of an instance's mesh, object space, as a unit vector in bake space; zero where it has no direction.
+    pub fn turned(&self, instance: usize, normal: Vec3) -> DVec3 {
+        (self.normal_from_object[instance] * normal.as_dvec3()).normalize_or_zero()
+    }
+
     /// The unit normal that the mesh's own normals blend to at a point of a triangle (weights of its second and third
     /// corner), on the triangle's front. The triangle's normal where the mesh has none, or where they are far from it.
     pub fn at(&self, scene: &Scene, geometry: &Geometry, triangle: usize, [u, v]: [f64; 2]) -> DVec3 {
@@ -26,11 +31,8 @@ impl ShadingNormals {
         let surface = geometry.surface(triangle);
         let mesh = &scene.meshes[scene.instances[surface.instance].mesh];
         let Some(normals) = &mesh.normals else { return plane };
-        let turn = self.normal_from_object[surface.instance];
-        let corner = |k: usize| {
-            let normal = normals[mesh.indices[3 * surface.mesh_triangle + k] as usize];
-            (turn * normal.as_dvec3()).normalize_or_zero()
-        };
+        let vertex = |k: usize| mesh.indices[3 * surface.mesh_triangle + k] as usize;
+        let corner = |k: usize| self.turned(surface.instance, normals[vertex(k)]);
         let blended = (corner(0) * (1.0 - u - v) + corner(1) * u + corner(2) * v).normalize_or_zero();
         if blended.dot(plane) < LEAST_COSINE { plane } else { blended }
     }
@@ -41,7 +43,7 @@ mod tests {
     use super::*;
     use crate::scene::{Instance, Mesh, Node};
     use crate::testing::SceneBuilder;
-    use glam::{DMat4, Vec3};
+    use glam::DMat4;
 
     fn scene(matrix: DMat4) -> Scene {
         let triangle = [Vec3::ZERO, Vec3::Z, Vec3::X];

@@ -12,7 +12,7 @@
 //! passes it within [`CORNER_PADDING`]. What is kept is then asked in `f64`, by the very test that [`Tracer`] uses. So
 //! answers are the tracer's, watertight at shared edges, and do not depend on the width of SIMD.
 
-use super::wide::{Child, Leaf, Node, WIDTH, Wide};
+use super::wide::{Child, Leaf, Node, WIDTH, Wide, bits, first_lanes, push_far_first};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
 use glam::{DMat3, DVec3};
@@ -124,7 +124,7 @@ impl<'a> Scatter<'a> {
             let first = room.rays.iter().take_while(|ray| ray.own != id && self.meets(ray, id).is_some()).count();
             stopped = (1u32 << first) - 1;
         }
-        let open = all(queries.len()) & !stopped;
+        let open = first_lanes(queries.len()) & !stopped;
         if open != 0 && !self.wide.nodes.is_empty() {
             let level = self.level;
             *guess = None;
@@ -178,7 +178,7 @@ impl<'a> Scatter<'a> {
         shared.clear();
         shared.push((Child::ROOT, open));
         while let Some((child, met_by)) = shared.pop() {
-            let mut asking = met_by & active;
+            let asking = met_by & active;
             if asking == 0 {
                 continue;
             }
@@ -187,16 +187,12 @@ impl<'a> Scatter<'a> {
                     let node = &self.wide.nodes[node as usize];
                     let mut met = 0;
                     children.fill(0);
-                    while asking != 0 {
-                        let ray = asking.trailing_zeros() as usize;
-                        asking &= asking - 1;
+                    for ray in bits(asking) {
                         children[ray] = node_met(simd, node, &rays[ray].narrow, f32::INFINITY, near);
                         met |= children[ray];
                     }
                     let of_rays = u32x16::from_slice(simd, children);
-                    while met != 0 {
-                        let lane = met.trailing_zeros() as usize;
-                        met &= met - 1;
+                    for lane in bits(met) {
                         let bit = u32x16::splat(simd, 1 << lane);
                         let met_by = (of_rays & bit).simd_eq(bit).to_bitmask() as u32;
                         shared.push((node.child[lane], met_by));
@@ -204,18 +200,14 @@ impl<'a> Scatter<'a> {
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &self.wide.leaves[leaf as usize];
-                    while asking != 0 {
-                        let index = asking.trailing_zeros() as usize;
-                        asking &= asking - 1;
+                    for index in bits(asking) {
                         let ray = &rays[index];
-                        let mut met = leaf_met(simd, leaf, &ray.narrow, f32::INFINITY);
-                        while met != 0 {
-                            let id = leaf.ids[met.trailing_zeros() as usize];
-                            met &= met - 1;
+                        for lane in bits(leaf_met(simd, leaf, &ray.narrow, f32::INFINITY)) {
+                            let id = leaf.ids[lane];
                             if id != ray.own && self.meets(ray, id).is_some() {
                                 *found = Some(Occluder(id));
                                 active &= !(1 << index);
-                                met = 0;
+                                break;
                             }
                         }
                     }
@@ -240,18 +232,16 @@ impl<'a> Scatter<'a> {
         let ScatterRoom { rays, sorted, children, near, .. } = room;
         let mut reach = [reach; PACKET];
         sorted.clear();
-        sorted.push(Pending { child: Child::ROOT, met_by: all(rays.len()), near: 0.0 });
+        sorted.push(Pending { child: Child::ROOT, met_by: first_lanes(rays.len()), near: 0.0 });
         while let Some(Pending { child, met_by, near: least }) = sorted.pop() {
-            let mut asking = met_by;
+            let asking = met_by;
             match child {
                 Child::Node(node) => {
                     let node = &self.wide.nodes[node as usize];
                     let mut met = 0;
                     let mut nearest = f32x16::splat(simd, f32::INFINITY);
                     children.fill(0);
-                    while asking != 0 {
-                        let ray = asking.trailing_zeros() as usize;
-                        asking &= asking - 1;
+                    for ray in bits(asking) {
                         let far = reach[ray] as f32 * FAR_SLACK;
                         if least <= far {
                             children[ray] = node_met(simd, node, &rays[ray].narrow, far, near);
@@ -262,24 +252,23 @@ impl<'a> Scatter<'a> {
                     nearest.store_slice(near);
                     let of_rays = u32x16::from_slice(simd, children);
                     let first = sorted.len();
-                    while met != 0 {
-                        let lane = met.trailing_zeros() as usize;
-                        met &= met - 1;
+                    for lane in bits(met) {
                         let bit = u32x16::splat(simd, 1 << lane);
                         let met_by = (of_rays & bit).simd_eq(bit).to_bitmask() as u32;
-                        push_far_first(sorted, first, Pending { child: node.child[lane], met_by, near: near[lane] });
+                        push_far_first(
+                            sorted,
+                            first,
+                            Pending { child: node.child[lane], met_by, near: near[lane] },
+                            |pending| pending.near,
+                        );
                     }
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &self.wide.leaves[leaf as usize];
-                    while asking != 0 {
-                        let index = asking.trailing_zeros() as usize;
-                        asking &= asking - 1;
+                    for index in bits(asking) {
                         let (ray, reach, found) = (&rays[index], &mut reach[index], &mut found[index]);
-                        let mut met = leaf_met(simd, leaf, &ray.narrow, *reach as f32 * FAR_SLACK);
-                        while met != 0 {
-                            let id = leaf.ids[met.trailing_zeros() as usize];
-                            met &= met - 1;
+                        for lane in bits(leaf_met(simd, leaf, &ray.narrow, *reach as f32 * FAR_SLACK)) {
+                            let id = leaf.ids[lane];
                             if id != ray.own
                                 && let Some((distance, barycentric)) = self.meets(ray, id)
                                 && is_nearer((id, distance), found, *reach)
@@ -314,18 +303,6 @@ fn is_nearer((id, distance): (u32, f64), found: &Option<Nearest>, reach: f64) ->
     }
 }
 
-/// Pushes a child among its siblings, which start at `first`, so that the nearest is last.
-#[inline]
-fn push_far_first(stack: &mut Vec<Pending>, first: usize, new: Pending) {
-    let mut at = stack.len();
-    stack.push(new);
-    while at > first && stack[at - 1].near < new.near {
-        stack[at] = stack[at - 1];
-        at -= 1;
-    }
-    stack[at] = new;
-}
-
 /// Which of a node's boxes a ray meets before `far`: a bit set. `near` gets where it enters them.
 #[inline(always)]
 fn node_met<S: Simd>(simd: S, node: &Node, ray: &Narrow, far: f32, near: &mut [f32; WIDTH]) -> u32 {
@@ -341,7 +318,7 @@ fn node_met<S: Simd>(simd: S, node: &Node, ray: &Narrow, far: f32, near: &mut [f
     let starts = enters.max(f32x16::splat(simd, 0.0));
     let met = starts.simd_le(leaves.min(f32x16::splat(simd, far)));
     starts.store_slice(near);
-    met.to_bitmask() as u32 & all(node.count)
+    met.to_bitmask() as u32 & first_lanes(node.count)
 }
 
 /// Which triangles of a leaf a ray may meet before `far`: a bit set.
@@ -375,13 +352,7 @@ fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, ray: &Narrow, far: f32) -> u32 {
     let nearest = a_z.min(b_z).min(c_z);
     let padding = f32x16::splat(simd, BOX_PADDING);
     let ahead = farthest.simd_ge(-padding) & nearest.simd_le(padding + far);
-    (passed & ahead).to_bitmask() as u32 & all(leaf.count)
-}
-
-/// That many bits.
-#[inline(always)]
-fn all(count: usize) -> u32 {
-    (1 << count) - 1
+    (passed & ahead).to_bitmask() as u32 & first_lanes(leaf.count)
 }
 
 #[cfg(test)]
@@ -432,7 +403,7 @@ mod tests {
                     let mut guess = None;
                     for _ in 0..2 {
                         let stopped = scatter.occluded(&mut ScatterRoom::default(), &queries[..count], &mut guess);
-                        assert_eq!(stopped, expected & all(count));
+                        assert_eq!(stopped, expected & first_lanes(count));
                     }
                 }
             }

@@ -58,6 +58,34 @@ impl Default for Child {
     }
 }
 
+/// Numbers of the bits that are set.
+#[inline(always)]
+pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = (mask != 0).then(|| mask.trailing_zeros() as usize);
+        mask &= mask.wrapping_sub(1);
+        lane
+    })
+}
+
+/// The bits of so many lanes.
+#[inline(always)]
+pub(crate) fn first_lanes(count: usize) -> u32 {
+    (1 << count) - 1
+}
+
+/// Pushes a node among its siblings, which start at `first`, so that the nearest, by `near`, is last.
+#[inline(always)]
+pub(crate) fn push_far_first<T: Copy>(stack: &mut Vec<T>, first: usize, new: T, near: impl Fn(&T) -> f32) {
+    let mut at = stack.len();
+    stack.push(new);
+    while at > first && near(&stack[at - 1]) < near(&new) {
+        stack[at] = stack[at - 1];
+        at -= 1;
+    }
+    stack[at] = new;
+}
+
 impl Wide {
     /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {

@@ -16,7 +16,7 @@
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use crate::trace::wide::{Leaf, Node, Points};
+use crate::trace::wide::{Leaf, Node, Points, first_lanes};
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;
@@ -135,7 +135,7 @@ pub(super) fn node_met<S: Simd>(simd: S, node: &Node, wanted: &Wanted, near2: &m
             let boxes = turned(simd, node, wanted);
             let (met, near) = met(simd, &boxes, wanted);
             near.store_slice(near2);
-            met.to_bitmask() as u32 & real(node.count)
+            met.to_bitmask() as u32 & first_lanes(node.count)
         },
     )
 }
@@ -148,15 +148,9 @@ pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, wanted: &Wanted) -> u32 {
             let a = corner(simd, &leaf.corners[0], wanted);
             let b = corner(simd, &leaf.corners[1], wanted);
             let c = corner(simd, &leaf.corners[2], wanted);
-            triangles_met(simd, [a, b, c], wanted).to_bitmask() as u32 & real(leaf.count)
+            triangles_met(simd, [a, b, c], wanted).to_bitmask() as u32 & first_lanes(leaf.count)
         },
     )
-}
-
-/// The lanes in use.
-#[inline(always)]
-fn real(count: usize) -> u32 {
-    (1 << count) - 1
 }
 
 /// Sixteen boxes relative to where the walk looks from, by axis.

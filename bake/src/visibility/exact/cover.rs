@@ -7,8 +7,8 @@ use super::holes::Pierced;
 use super::near::hidden_near;
 use super::seeds::Seeds;
 use super::solve::{Hidden, Packet, hide};
-use super::walk::bits;
 use crate::trace::Tracer;
+use crate::trace::wide::bits;
 use fearless_simd::Simd;
 use glam::DVec3;
 

@@ -3,7 +3,7 @@
 use super::boxes::{Frames, Wanted, leaf_met, node_met};
 use super::cover::{Coverer, Query};
 use super::solve::{LANES, Packet};
-use crate::trace::wide::{Child, WIDTH, Wide};
+use crate::trace::wide::{Child, WIDTH, Wide, bits, push_far_first};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
@@ -41,7 +41,7 @@ impl Walk {
                     let first = self.stack.len();
                     for lane in bits(node_met(simd, node, &self.wanted, &mut near2)) {
                         let pending = Pending { child: node.child[lane], near2: near2[lane] };
-                        push_far_first(&mut self.stack, first, pending);
+                        push_far_first(&mut self.stack, first, pending, |pending| pending.near2);
                     }
                 }
                 Child::Leaf(leaf) => {
@@ -74,25 +74,4 @@ impl Walk {
             }
         }
     }
-}
-
-/// Pushes a node among its siblings, which start at `first`, so that the nearest is last.
-#[inline]
-fn push_far_first(stack: &mut Vec<Pending>, first: usize, new: Pending) {
-    let mut at = stack.len();
-    stack.push(new);
-    while at > first && stack[at - 1].near2 < new.near2 {
-        stack[at] = stack[at - 1];
-        at -= 1;
-    }
-    stack[at] = new;
-}
-
-/// Numbers of the bits that are set.
-pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = (mask != 0).then(|| mask.trailing_zeros() as usize);
-        mask &= mask.wrapping_sub(1);
-        lane
-    })
 }
