@@ -30,4 +30,4 @@ pub mod texels;
 pub mod trace;
 pub mod visibility;
 
-pub use bake::{BakeError, BakeReport, Prepared, bake, prepare};
+pub use bake::{BakeError, BakeReport, Prepared, bake, prepare, sun_path};

@@ -14,7 +14,7 @@ pub fn scenes(shared: &[&str]) -> Vec<PathBuf> {
 }
 
 /// A long day in the desert.
-#[allow(dead_code, reason = "one of the benches needs no sun")]
+#[allow(dead_code, reason = "some of the benches need no sun")]
 pub fn summer_day() -> DayRequest {
     DayRequest {
         latitude_deg: 35.0,

@@ -148,7 +148,7 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     leave_out(&mut scene, &settings.leave_out)?;
     let mut warnings = scene.warnings.clone();
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
-    let path = if is_lamp_alone { None } else { sun_path(settings, &scene, &mut warnings)? };
+    let path = if is_lamp_alone { None } else { sun_path(&settings.sun, &scene, &mut warnings)? };
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
     let no_sun = if is_lamp_alone { "a lamp is baked instead" } else { "the sun does not rise" };
     let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
@@ -311,8 +311,9 @@ fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     value
 }
 
-fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) -> Result<Option<SunPath>, BakeError> {
-    let request = match (&settings.sun, scene.sun_direction) {
+/// The sun that is asked for, over a scene; none, with a warning that says so, where it does not rise.
+pub fn sun_path(request: &SunRequest, scene: &Scene, warnings: &mut Vec<String>) -> Result<Option<SunPath>, BakeError> {
+    let request = match (request, scene.sun_direction) {
         (SunRequest::Keyed { json, north_deg }, _) => return Ok(Some(sun::parse_keyed(json, *north_deg)?)),
         (SunRequest::SceneOr(_), Some(direction)) => {
             let radius_rad = sun::SUN_ANGULAR_RADIUS_DEG.to_radians();
@@ -324,8 +325,8 @@ fn sun_path(settings: &BakeSettings, scene: &Scene, warnings: &mut Vec<String>) 
         DayOutcome::Path(path) => Ok(Some(path)),
         DayOutcome::NoSun { highest_elevation_deg, .. } => {
             warnings.push(format!(
-                "the sun does not rise at latitude {} on {}: its centre stays at least {:.1} degrees below the horizon, so no \
-                 sun is baked; choose another --date for one",
+                "the sun does not rise at latitude {} on {}: its centre stays at least {:.1} degrees below the horizon, so \
+                 there is no sun; choose another --date for one",
                 request.latitude_deg, request.date, -highest_elevation_deg
             ));
             Ok(None)

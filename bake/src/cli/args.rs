@@ -4,7 +4,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::maps::Bits;
 use sunbake::settings::{EngineChoice, VertexAttribute};
-use sunbake::sun::Date;
+use sunbake::sun::{Date, parse_place};
 
 /// Bakes when every texel of a glTF scene sees the sun.
 #[derive(Debug, Parser)]
@@ -270,13 +270,6 @@ pub struct TexelsArgs {
     /// Which texels: the same seed draws the same ones.
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
-}
-
-fn parse_place(text: &str) -> Result<[f64; 2], String> {
-    let wrong = || format!("`{text}` is not a place: give degrees north and east, as 48.2,16.4");
-    let (latitude, longitude) = text.split_once(',').ok_or_else(wrong)?;
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
-    Ok([number(latitude)?, number(longitude)?])
 }
 
 fn parse_only(text: &str) -> Result<Only, String> {

@@ -9,12 +9,7 @@ use std::path::Path;
 use sunbake::BakeReport;
 use sunbake::atlas::Density;
 use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
-use sunbake::sun::{Date, DayRequest};
-
-/// Where the sun stands if nothing says.
-const DEFAULT_PLACE_DEG: [f64; 2] = [40.0, 0.0];
-/// The day that is baked if none is given: the northern summer solstice.
-const DEFAULT_DATE: [i32; 3] = [2026, 6, 21];
+use sunbake::sun::DayRequest;
 
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
@@ -183,17 +178,8 @@ fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
         let json = path_file(file, "--path")?;
         return Ok(SunRequest::Keyed { json, north_deg: given.north });
     }
-    let [latitude_deg, longitude_deg] = given.place.unwrap_or(DEFAULT_PLACE_DEG);
-    let [year, month, day] = DEFAULT_DATE;
-    let default_date = Date::new(year, month as u32, day as u32).map_err(|e| Failure::usage(e.to_string()))?;
-    let request = DayRequest {
-        latitude_deg,
-        longitude_deg,
-        date: given.date.unwrap_or(default_date),
-        utc_offset_h: given.utc_offset,
-        north_deg: given.north,
-        window: given.window,
-    };
+    let day = DayRequest::new(given.place, given.date).map_err(|e| Failure::usage(e.to_string()))?;
+    let request = DayRequest { utc_offset_h: given.utc_offset, north_deg: given.north, window: given.window, ..day };
     let names_a_day =
         given.place.is_some() || given.date.is_some() || given.window.is_some() || given.utc_offset.is_some();
     Ok(if names_a_day { SunRequest::Day(request) } else { SunRequest::SceneOr(request) })

@@ -13,7 +13,7 @@
 //! day that is 7 minutes longer at mid latitudes.
 
 use super::SUN_ANGULAR_RADIUS_DEG;
-use super::clock::{DAY_MIN, Date, clock_text};
+use super::clock::{DAY_MIN, Date, DateError, clock_text};
 use super::compass::Compass;
 use super::ephemeris::{Ephemeris, EphemerisError};
 use super::fit::{Sample, fit};
@@ -60,6 +60,29 @@ pub enum DayOutcome {
         /// When that is, in minutes after local midnight.
         highest_min: f64,
     },
+}
+
+/// Where the sun stands if nothing says: degrees north and east.
+const DEFAULT_PLACE_DEG: [f64; 2] = [40.0, 0.0];
+/// The day if none is given: the northern summer solstice.
+const DEFAULT_DATE: (i32, u32, u32) = (2026, 6, 21);
+
+impl DayRequest {
+    /// From sunrise to sunset at a place, on a date; or else at 40 degrees north, on 2026-06-21.
+    pub fn new(place_deg: Option<[f64; 2]>, date: Option<Date>) -> Result<Self, DateError> {
+        let [latitude_deg, longitude_deg] = place_deg.unwrap_or(DEFAULT_PLACE_DEG);
+        let (year, month, day) = DEFAULT_DATE;
+        let date = date.map_or_else(|| Date::new(year, month, day), Ok)?;
+        Ok(Self { latitude_deg, longitude_deg, date, utc_offset_h: None, north_deg: 0.0, window: None })
+    }
+}
+
+/// A place from text: degrees north and east, as `48.2,16.4`.
+pub fn parse_place(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("`{text}` is not a place: give degrees north and east, as 48.2,16.4");
+    let (latitude, longitude) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(wrong);
+    Ok([number(latitude)?, number(longitude)?])
 }
 
 /// Why a request gives no day.

@@ -24,7 +24,7 @@ mod tests;
 pub use arc::{HalfSpaceIntervals, SunArc};
 pub use clock::{ClockError, DAY_MIN, Date, DateError, YEARS, clock_text, parse_clock, parse_window};
 pub use compass::Compass;
-pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day};
+pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day, parse_place};
 pub use ephemeris::EphemerisError;
 pub(crate) use keyed::key_times;
 pub use keyed::{KeyedError, MAX_KEYS, parse_keyed};

@@ -205,6 +205,18 @@ impl Tracer {
         self.closest_hit_where(origin_m, direction, |_| true)
     }
 
+    /// Calls `visit` with every triangle along the direction (its flat index, whether it has holes or not) and its distance,
+    /// in no order. A ray through an edge meets both of its triangles.
+    pub fn for_each_hit(&self, origin_m: DVec3, direction: &Direction, mut visit: impl FnMut(u32, f64)) {
+        let origin = origin_m * self.tracer_from_bake;
+        self.bvh.ray_traverse(ray(origin, direction), &mut RayHit::none(), |_, id| {
+            if let Some((distance, _)) = direction.meet(origin, &self.corners[id]) {
+                visit(self.flat[id], distance / self.tracer_from_bake);
+            }
+            f32::INFINITY
+        });
+    }
+
     #[inline]
     fn meet(&self, origin: DVec3, direction: &Direction, id: usize) -> Option<(f64, [f64; 2])> {
         let met = direction.meet(origin, &self.corners[id])?;
