@@ -1,13 +1,13 @@
-//! Plays sunbake maps back, beside a ray-traced truth.
+//! Plays sunbake maps back, beside live shadow volumes and a ray-traced truth.
 //!
-//! A [`Stage`] is a baked set with its scene, ready to be looked at. A [`Shot`] is the stage through a camera, a
+//! A [`Stage`] is a baked set with its scene, or a scene alone, ready to be looked at. A [`Shot`] is the stage through a camera, a
 //! [`Moment`] is where the sun stands and what light that makes. A [`technique::Technique`] answers, for a shot at a
 //! moment, how much of the sun each pixel's surface sees; all answer with the same kind of image, so all are compared
 //! alike. The modules read in that order:
 //!
 //! ```text
-//! stage -> camera -> light -> technique (baked on the GPU | on the CPU | truth) -> shade -> image
-//!                                          gpu   playback                          compare
+//! stage -> camera -> light -> technique (baked on the GPU | on the CPU | volumes | truth) -> shade -> image
+//!                                        gpu                playback     volumes            compare
 //! ```
 
 pub mod camera;
@@ -25,6 +25,7 @@ pub mod technique;
 #[doc(hidden)]
 pub mod testing;
 pub mod texture;
+pub mod volumes;
 
 pub use camera::{Camera, View};
 pub use image::Raster;

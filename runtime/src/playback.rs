@@ -98,7 +98,7 @@ impl<'a> Page<'a> {
     pub fn lamp_visibility(&self, page_uv: Vec2, face: Vec3, way_m: Vec3, filter: Filter, lamp: &LampMoment) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
         let ball_share = (0.5 + face.dot(way_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
-        if ball_share <= 0.0 {
+        if ball_share <= 0.0 || way_m.length_squared() > lamp.range_m * lamp.range_m {
             return 0.0;
         }
         let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;

@@ -17,8 +17,8 @@ use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
 use sunbake_shaders::AmbientModel;
 
-/// Memory that a set's own scene may take: what was baked was read once already.
-const MAX_SCENE_BYTES: u64 = 16 << 30;
+/// Memory that a scene may take.
+pub const MAX_SCENE_BYTES: u64 = 16 << 30;
 
 /// What is drawn, and the maps that light it.
 pub struct Stage {
@@ -98,6 +98,14 @@ impl Stage {
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
 
+    /// A scene for which nothing was baked: it is drawn and traced, and its maps are empty.
+    pub fn plain(scene: Scene, path: Option<SunPath>) -> Self {
+        let chart = Chart { page: 0, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
+        let charts = vec![Some(chart); scene.instances.len()];
+        let page = PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None };
+        Self::with_charts(scene, charts, vec![page], Bits::Eight, path)
+    }
+
     /// Joins a scene with what was baked for it.
     pub fn new(
         scene: Scene,
@@ -107,13 +115,23 @@ impl Stage {
         path: Option<SunPath>,
     ) -> Result<Self, StageError> {
         let charts = charts(&scene, instances, pages.len())?;
+        Ok(Self::with_charts(scene, charts, pages, bits, path))
+    }
+
+    fn with_charts(
+        scene: Scene,
+        charts: Vec<Option<Chart>>,
+        pages: Vec<PageMaps>,
+        bits: Bits,
+        path: Option<SunPath>,
+    ) -> Self {
         let normals = ShadingNormals::new(&scene);
         let geometry = Geometry::new(&scene);
         let is_drawn = |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Air;
         let sides = sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let tracer = OnceLock::new();
-        Ok(Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer })
+        Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer }
     }
 
     /// The same stage with the lamp whose times are in the pages; its path in world space.
@@ -150,6 +168,12 @@ impl Stage {
     pub fn without_sun(mut self) -> Self {
         self.pages.iter_mut().for_each(|page| page.lanes.clear());
         self
+    }
+
+    /// The same stage without the times of either light, whose paths stay: for techniques that find shadows themselves.
+    pub fn without_times(mut self) -> Self {
+        self.pages.iter_mut().for_each(|page| page.lamp = None);
+        self.without_sun()
     }
 
     /// The same stage without its lamp.

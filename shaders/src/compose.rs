@@ -9,6 +9,7 @@ macro_rules! wgsl {
         include_str!(concat!("wgsl/", $name, ".wgsl"))
     };
 }
+pub(crate) use wgsl;
 
 /// What a surface needs of its program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -118,9 +119,9 @@ pub fn lamp_visibility_shader(surface: SurfaceVariant, page: &PageVariant, filte
     text
 }
 
-/// The background: entry points `sky_vertex` and `sky_fragment`.
+/// The background: entry points `screen_vertex` and `sky_fragment`.
 pub fn sky_shader() -> String {
-    [&constants(), wgsl!("frame"), wgsl!("sky_color"), wgsl!("sky")].concat()
+    [&constants(), wgsl!("frame"), wgsl!("sky_color"), wgsl!("screen"), wgsl!("sky")].concat()
 }
 
 fn constants() -> String {
@@ -131,7 +132,7 @@ fn constants() -> String {
 }
 
 /// What every program that lights a surface begins with.
-fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
+pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
     let mut text = constants();
     text.push_str(wgsl!("frame"));
     text.push_str(wgsl!("place"));
@@ -170,6 +171,7 @@ fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
         Filter::Nearest => wgsl!("lamp_filter_nearest"),
         Filter::Bilinear => wgsl!("lamp_filter_bilinear"),
     });
+    text.push_str(wgsl!("way_to_lamp"));
     text.push_str(wgsl!("lamp_baked"));
 }
 

@@ -10,6 +10,7 @@
 mod compose;
 mod uniforms;
 mod vertex;
+mod volumes;
 
 pub use compose::{
     AmbientModel, Filter, LaneVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader, lit_shader,
@@ -17,6 +18,10 @@ pub use compose::{
 };
 pub use uniforms::{FrameUniform, LampUniform, MaterialUniform, SkyUniform, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
 pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};
+pub use volumes::{
+    HardLight, VolumeCorners, VolumeLight, VolumeUse, background_shader, hard_light_shader, screen_shader,
+    volume_shader,
+};
 
 /// How an engine of one's own evaluates a map, in WGSL.
 pub const ENGINE_WGSL: &str = include_str!("engine/soft_visibility.wgsl");

@@ -81,8 +81,10 @@ pub struct LampUniform {
     pub radius_m: f32,
     /// One over its diameter; very large for a point.
     pub balls_per_metre: f32,
+    /// How far its light goes; very large where it goes on for ever.
+    pub range_m: f32,
     #[doc(hidden)]
-    pub pad: [f32; 2],
+    pub pad: f32,
 }
 
 /// The sky at a moment, in spherical harmonics. `Sky` in `ambient_sky.wgsl`.

@@ -45,8 +45,20 @@ fn pages() -> Vec<PageVariant> {
 #[test]
 fn every_composed_shader_is_valid() {
     validated(&sky_shader());
+    validated(&background_shader());
+    validated(&screen_shader());
+    for light in [VolumeLight::Sun, VolumeLight::Lamp, VolumeLight::LampWithRange] {
+        for corners in [VolumeCorners::Indexed, VolumeCorners::Found] {
+            for of in [VolumeUse::Stencil, VolumeUse::Count, VolumeUse::Fill, VolumeUse::Show] {
+                validated(&volume_shader(light, corners, of));
+            }
+        }
+    }
     for surface in surfaces() {
         validated(&depth_shader(surface));
+        for light in [HardLight::SunGate, HardLight::Sun, HardLight::LampGate, HardLight::Lamp] {
+            validated(&hard_light_shader(surface, light));
+        }
         for page in pages() {
             for filter in [Filter::Nearest, Filter::Bilinear] {
                 validated(&lit_shader(surface, &page, filter));
@@ -108,7 +120,7 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
     assert_eq!(members(&module, "Frame"), (rust, size_of::<FrameUniform>() as u32));
     let page = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
     let lit = validated(&lamp_visibility_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
-    let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, balls_per_metre);
+    let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, balls_per_metre, range_m);
     assert_eq!(members(&lit, "Lamp"), (rust, size_of::<LampUniform>() as u32));
     let page = PageVariant { ambient: AmbientModel::Sky, ..PageVariant::default() };
     let lit = validated(&lit_shader(SurfaceVariant::default(), &page, Filter::Bilinear));

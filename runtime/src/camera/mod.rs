@@ -105,6 +105,17 @@ impl View {
         self.ray_first + self.ray_per_column * (column as f32 + 0.5) + self.ray_per_row * (row as f32 + 0.5)
     }
 
+    /// Depth at which surfaces start to be drawn.
+    pub fn near_m(&self) -> f32 {
+        self.near_m
+    }
+
+    /// Where a ray, one deep, meets the picture, in pixels from its upper left corner.
+    pub fn pixel_of(&self, ray: DVec3) -> [f64; 2] {
+        let along = |k: usize| (ray.dot(self.clip_rows[k].as_dvec3()) * 0.5 + 0.5) * f64::from(self.size[k]);
+        [along(0), f64::from(self.size[1]) - along(1)]
+    }
+
     /// Number of pixels.
     pub fn pixel_count(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize

@@ -4,7 +4,10 @@ use super::place::{CameraChoice, parse_camera};
 use super::when::{When, parse_when};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use sunbake::sun::{Date, parse_place};
+use sunbake_runtime::light::WITHOUT_END;
 use sunbake_runtime::technique::Truth;
+use sunbake_runtime::volumes::Mode;
 use sunbake_runtime::{AmbientModel, Filter};
 
 /// Plays sunbake's maps back at any time of the day.
@@ -17,9 +20,9 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Draw one picture of a set.
+    /// Draw one picture of a set, or of a scene that is not baked.
     Frame(FrameArgs),
-    /// Draw a day of a set: numbered pictures, a contact sheet, an animation.
+    /// Draw a day of a set, or of a scene that is not baked: numbered pictures, a contact sheet, an animation.
     Frames(FramesArgs),
     /// Bake our own scene for a June day and draw the day beside truth.
     Demo(DemoArgs),
@@ -27,7 +30,7 @@ pub enum Command {
 
 #[derive(Debug, ClapArgs)]
 pub struct FrameArgs {
-    /// The set's folder.
+    /// The set's folder, or for techniques that need no bake a scene: .gltf or .glb.
     pub set: PathBuf,
     /// When: HH:MM by the set's local clocks, or a fraction of its path from 0 to 1.
     ///
@@ -41,6 +44,8 @@ pub struct FrameArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output_file: PathBuf,
     #[command(flatten)]
+    pub sun: SunArgs,
+    #[command(flatten)]
     pub look: LookArgs,
     /// What the picture shows.
     #[arg(long = "output", value_enum, default_value_t = OutputChoice::Color)]
@@ -51,7 +56,7 @@ pub struct FrameArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct FramesArgs {
-    /// The set's folder.
+    /// The set's folder, or for techniques that need no bake a scene: .gltf or .glb.
     pub set: PathBuf,
     /// How many pictures, 1 to 10000, at the middles of as many equal parts of the path.
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -61,6 +66,8 @@ pub struct FramesArgs {
     /// It gets frame_0000.png and so on, contact.png with all of them small, and day.png, an animated PNG.
     #[arg(short, long = "folder", value_name = "DIR")]
     pub output_folder: PathBuf,
+    #[command(flatten)]
+    pub sun: SunArgs,
     #[command(flatten)]
     pub look: LookArgs,
     /// What the pictures show.
@@ -94,6 +101,24 @@ pub struct DemoArgs {
     pub manners: MannersArgs,
 }
 
+/// The sun over a scene that is not baked: a set has its own.
+#[derive(Debug, Clone, ClapArgs)]
+#[command(next_help_heading = "Sun of a scene that is not baked")]
+pub struct SunArgs {
+    /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
+    #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
+    pub place: Option<[f64; 2]>,
+    /// Local date; the path runs from sunrise to sunset. [default: 2026-06-21]
+    #[arg(long, value_name = "YYYY-MM-DD")]
+    pub date: Option<Date>,
+    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    pub utc_offset: Option<f64>,
+    /// Degrees that north is turned from -Z towards +X. [default: 0]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub north: Option<f64>,
+}
+
 /// What is printed.
 #[derive(Debug, Clone, Copy, ClapArgs)]
 #[command(next_help_heading = "Printing")]
@@ -104,6 +129,9 @@ pub struct MannersArgs {
     /// Print nothing but errors.
     #[arg(short, long)]
     pub quiet: bool,
+    /// Print what the technique decided for the picture, the last of several, and why.
+    #[arg(long)]
+    pub explain: bool,
 }
 
 /// How pictures are taken, whatever they are of.
@@ -120,15 +148,24 @@ pub struct LookArgs {
     /// above and aside that shows most of it.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, default_value = "default", allow_hyphen_values = true)]
     pub camera: CameraChoice,
-    /// How visibility is found: baked, truth:hard, truth:soft or truth:soft:N.
+    /// How visibility is found: baked, `volumes[:MODE]`, truth:hard, truth:soft or truth:soft:N.
     ///
-    /// `truth:hard` traces one ray to the sun's centre from each pixel, `truth:soft` N rays over its disc, 64 unless
-    /// given: time grows with N, noise shrinks as 1/N.
+    /// `volumes` counts shadow volumes in the GPU's stencil: hard edges, exact at each pixel, anew for each picture, with no
+    /// bake. Its modes are `volumes:zfail` (counted behind surfaces, always right), `volumes:zpass` (before them where that is
+    /// right, cheaper), `volumes:triangles` (a volume a triangle) and `volumes:gpu` (silhouettes found by the vertex shader);
+    /// without one, each caster is drawn as suits it. Leaves cast their whole cards. `truth:hard` traces one ray to the sun's
+    /// centre from each pixel, `truth:soft` N rays over its disc, 64 unless given: time grows with N, noise shrinks as 1/N.
     #[arg(long, value_name = "TECHNIQUE", value_parser = parse_technique, default_value = "baked")]
     pub technique: TechniqueChoice,
-    /// Which lights of the set are on.
+    /// With `volumes`: as how many hard suns its disc shines, 1 to 4096. Time grows with N; edges have N steps.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub sun_samples: u32,
+    /// Metres beyond which a set's lamp gives no light. Volumes end there, and cost less. [default: without end]
+    #[arg(long, value_name = "M", value_parser = parse_range, allow_hyphen_values = true)]
+    pub lamp_range: Option<f32>,
+    /// Which lights are on.
     ///
-    /// A visibility picture shows the sun's, or the lamp's where the lamp alone is on. A set's lamp is drawn as bright as
+    /// A visibility picture shows the sun's, whichever are on, or the lamp's where the lamp alone is. A set's lamp is drawn as bright as
     /// makes it readable. `sky` is what comes from all around, and `sun` and `lamp` are without it.
     #[arg(long, value_enum, default_value_t = LightChoice::Both)]
     pub light: LightChoice,
@@ -156,6 +193,8 @@ pub enum OutputChoice {
     Color,
     /// How much of the sun is seen, and nothing else; pixels without a surface read 1.
     Visibility,
+    /// The lit scene with the sun's shadow volumes: faces that turn to the eye warm, others cold. With --technique volumes.
+    Volumes,
 }
 
 /// How visibility is found.
@@ -163,6 +202,8 @@ pub enum OutputChoice {
 pub enum TechniqueChoice {
     /// From the maps.
     Baked,
+    /// By shadow volumes.
+    Volumes(Mode),
     /// By rays.
     Truth(Truth),
 }
@@ -244,8 +285,19 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
     Ok([edge(width)?, edge(height)?])
 }
 
+fn parse_range(text: &str) -> Result<f32, String> {
+    let range_m = text.parse().ok().filter(|range_m: &f32| *range_m > 0.0 && *range_m < WITHOUT_END);
+    range_m.ok_or_else(|| format!("`{text}` is not a range: give metres above 0"))
+}
+
 fn parse_technique(text: &str) -> Result<TechniqueChoice, String> {
-    let wrong = || format!("`{text}` is not a technique: give baked, truth:hard, truth:soft or truth:soft:N");
+    let wrong = || {
+        let modes = Mode::ALL.map(|mode| mode.to_string()).join(", ");
+        format!("`{text}` is not a technique: give baked, {modes}, truth:hard, truth:soft or truth:soft:N")
+    };
+    if let Some(mode) = Mode::ALL.into_iter().find(|mode| mode.to_string() == text) {
+        return Ok(TechniqueChoice::Volumes(mode));
+    }
     match text {
         "baked" => Ok(TechniqueChoice::Baked),
         "truth:hard" => Ok(TechniqueChoice::Truth(Truth::Hard)),
@@ -274,7 +326,9 @@ mod tests {
             assert!(parse_size(bad).is_err(), "{bad}");
         }
         assert_eq!(parse_technique("truth:soft:9"), Ok(TechniqueChoice::Truth(Truth::Soft { rays: 9 })));
-        for bad in ["truth", "truth:", "truth:soft:", "truth:soft:0", "truth:soft:x", "volumes"] {
+        assert_eq!(parse_technique("volumes"), Ok(TechniqueChoice::Volumes(Mode::Planned)));
+        assert_eq!(parse_technique("volumes:gpu"), Ok(TechniqueChoice::Volumes(Mode::Gpu)));
+        for bad in ["truth", "truth:", "truth:soft:", "truth:soft:0", "truth:soft:x", "volumes:", "volumes:z"] {
             assert!(parse_technique(bad).is_err(), "{bad}");
         }
     }

@@ -1,11 +1,16 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
-use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
+use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, SunArgs, TechniqueChoice};
 use super::exit::Failure;
 use clap::ValueEnum;
 use std::path::Path;
-use sunbake_runtime::gpu::{Gpu, GpuError};
-use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique};
+use sunbake::BakeError;
+use sunbake::scene::LoadLimits;
+use sunbake::settings::SunRequest;
+use sunbake::sun::DayRequest;
+use sunbake_runtime::gpu::{Gpu, GpuError, VolumeSettings};
+use sunbake_runtime::stage::MAX_SCENE_BYTES;
+use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique, Volumes};
 use sunbake_runtime::{AmbientModel, Filter, Moment, Raster, Shot, Stage, View};
 
 /// Most samples of a picture: one of 16384 by 16384.
@@ -13,17 +18,29 @@ const MOST_SAMPLES: u64 = 1 << 28;
 
 /// Opens the GPU if the technique wants one. None: the CPU draws.
 pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
-    let wants_gpu = look.technique == TechniqueChoice::Baked && look.renderer != RendererChoice::Cpu;
-    if !wants_gpu {
-        return match (look.renderer, look.technique) {
-            (RendererChoice::Gpu, TechniqueChoice::Truth(_)) => {
-                Err(Failure::usage("truth is traced on the CPU: leave --renderer gpu out, or draw --technique baked"))
-            }
-            _ => Ok(None),
-        };
+    match (look.renderer, look.technique) {
+        (RendererChoice::Gpu, TechniqueChoice::Truth(_)) => {
+            return Err(Failure::usage(
+                "truth is traced on the CPU: leave --renderer gpu out, or draw --technique baked",
+            ));
+        }
+        (RendererChoice::Cpu, TechniqueChoice::Volumes(_)) => {
+            return Err(Failure::usage(
+                "shadow volumes are counted by a GPU: leave --renderer cpu out, or draw --technique truth:hard, which finds the \
+                 same shadows",
+            ));
+        }
+        (_, TechniqueChoice::Truth(_)) | (RendererChoice::Cpu, _) => return Ok(None),
+        _ => {}
     }
     match Gpu::open() {
         Ok(gpu) => Ok(Some(gpu)),
+        Err(GpuError::NoAdapter { reason }) if matches!(look.technique, TechniqueChoice::Volumes(_)) => {
+            Err(Failure::unsupported(format!(
+                "shadow volumes are counted by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's \
+                 lavapipe will do), or draw --technique truth:hard, which finds the same shadows"
+            )))
+        }
         Err(GpuError::NoAdapter { .. }) if look.renderer == RendererChoice::Auto => {
             if !quiet {
                 eprintln!("no GPU adapter found: drawing on the CPU");
@@ -44,6 +61,11 @@ pub fn technique<'a>(
     Ok(match (gpu, look.technique) {
         (Some(gpu), TechniqueChoice::Baked) => Box::new(BakedGpu::new(gpu, stage, filter)?),
         (None, TechniqueChoice::Baked) => Box::new(BakedCpu::new(stage, filter)),
+        (Some(gpu), TechniqueChoice::Volumes(mode)) => {
+            let settings = VolumeSettings { mode, sun_samples: look.sun_samples, ..VolumeSettings::default() };
+            Box::new(Volumes::new(gpu, stage, settings)?)
+        }
+        (None, TechniqueChoice::Volumes(_)) => return Err(Failure::unsupported("shadow volumes are counted by a GPU")),
         (_, TechniqueChoice::Truth(truth)) => Box::new(truth),
     })
 }
@@ -60,11 +82,48 @@ pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
     Ok(View::new(&camera, size, &stage.scene))
 }
 
-/// The set in a folder, with those of its maps that the lights and the model of ambient light call for.
-pub fn stage(folder: &Path, look: &LookArgs, output: OutputChoice) -> Result<Stage, Failure> {
-    let stage = Stage::read(folder)?;
+/// The set in a folder, with those of its maps that the lights and the model of ambient light call for; or a scene that is
+/// not baked, under a sun.
+pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) -> Result<Stage, Failure> {
+    let is_baked = look.technique == TechniqueChoice::Baked;
+    let is_volumes = matches!(look.technique, TechniqueChoice::Volumes(_));
+    if output == OutputChoice::Volumes && !is_volumes {
+        return Err(Failure::usage(
+            "there are no volumes to show: draw --technique volumes, or leave --output volumes out",
+        ));
+    }
+    if output == OutputChoice::Volumes && look.light == LightChoice::Sky {
+        return Err(Failure::usage("the sky throws no volumes: leave --light sky out, or --output volumes"));
+    }
+    if look.sun_samples > 1 && !is_volumes {
+        return Err(Failure::usage("--sun-samples is for --technique volumes; of truth give truth:soft:N"));
+    }
+    if !from.exists() {
+        return Err(Failure::io(format!("{} is not there: check its name", from.display())));
+    }
+    if from.is_file() {
+        if look.ambient.model().is_some_and(|(model, _)| model != AmbientModel::Hemisphere) {
+            return Err(Failure::usage(
+                "ambient light of a scene that is not baked is its normals': leave --ambient out",
+            ));
+        }
+        if is_baked {
+            return Err(Failure::usage(format!(
+                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes or truth:hard",
+                from.display()
+            )));
+        }
+        return plain_stage(from, sun);
+    }
+    if sun.place.is_some() || sun.date.is_some() || sun.utc_offset.is_some() || sun.north.is_some() {
+        return Err(Failure::usage(
+            "a set has the sun that it was baked with: leave --place, --date, --utc-offset and --north out",
+        ));
+    }
+    let stage = Stage::read(from)?;
+    let stage = if is_baked { stage } else { stage.without_times() };
     let best = stage.best_ambient();
-    let is_lit = output == OutputChoice::Color && matches!(look.light, LightChoice::Both | LightChoice::Sky);
+    let is_lit = output != OutputChoice::Visibility && matches!(look.light, LightChoice::Both | LightChoice::Sky);
     let model = match look.ambient.model() {
         _ if !is_lit => AmbientModel::Hemisphere,
         None => best,
@@ -85,8 +144,32 @@ pub fn stage(folder: &Path, look: &LookArgs, output: OutputChoice) -> Result<Sta
     })
 }
 
+fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {
+    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })
+        .map_err(|error| Failure::from(BakeError::Load(error)))?;
+    let day = DayRequest::new(sun.place, sun.date).map_err(|e| Failure::usage(e.to_string()))?;
+    let day = DayRequest { utc_offset_h: sun.utc_offset, north_deg: sun.north.unwrap_or(0.0), ..day };
+    let names_a_day = sun.place.is_some() || sun.date.is_some() || sun.utc_offset.is_some();
+    let request = if names_a_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) };
+    let mut warnings = Vec::new();
+    let path = sunbake::sun_path(&request, &scene, &mut warnings).map_err(|e| Failure::usage(e.to_string()))?;
+    warnings.iter().for_each(|warning| eprintln!("sunplay: {warning}"));
+    Ok(Stage::plain(scene, path))
+}
+
 /// The moment `t` with the lights that are to be on.
 pub fn moment(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure> {
+    if look.lamp_range.is_some() && stage.lamp.is_none() {
+        return Err(Failure::usage("there is no lamp: leave --lamp-range out"));
+    }
+    let mut moment = lights(stage, look, t)?;
+    if let (Some(lamp), Some(range_m)) = (&mut moment.lamp, look.lamp_range) {
+        lamp.range_m = range_m;
+    }
+    Ok(moment)
+}
+
+fn lights(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure> {
     match look.light {
         LightChoice::Both => Ok(stage.moment(t)),
         LightChoice::Sun => Ok(Moment::new(stage.path.as_ref(), t).without_sky()),
@@ -95,7 +178,7 @@ pub fn moment(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure>
             Ok(Moment::new(None, t).without_sky().with_lamp(stage.lamp_moment(t)))
         }
         LightChoice::Lamp => {
-            Err(Failure::usage("this set has no lamp: bake one with --lamp FILE, or leave --light lamp out"))
+            Err(Failure::usage("there is no lamp: bake one with --lamp FILE, or leave --light lamp out"))
         }
     }
 }
@@ -117,6 +200,10 @@ pub fn draw(
 ) -> Result<Picture, Failure> {
     Ok(match output {
         OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
+        OutputChoice::Volumes => match technique.shown(shot, moment)? {
+            Some(picture) => Picture::Color(picture),
+            None => return Err(Failure::usage("this technique has nothing to show: draw --technique volumes")),
+        },
         OutputChoice::Visibility if moment.is_lit_by_lamp_alone() => {
             Picture::Visibility(technique.lamp_visibility(shot, moment)?)
         }

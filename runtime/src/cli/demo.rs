@@ -114,6 +114,8 @@ fn look(args: &DemoArgs) -> LookArgs {
         size: SIZE,
         camera: CameraChoice::Default,
         technique: TechniqueChoice::Baked,
+        sun_samples: 1,
+        lamp_range: None,
         filter: FilterChoice::Bilinear,
         supersample: SUPERSAMPLE,
         light: LightChoice::Both,

@@ -13,7 +13,7 @@ use sunbake_runtime::Shot;
 pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     kind(&args.output_file)?;
     set_threads(args.look.threads)?;
-    let stage = stage(&args.set, &args.look, args.output)?;
+    let stage = stage(&args.set, &args.sun, &args.look, args.output)?;
     let t = args.at.on(stage.path.as_ref())?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let moment = moment(&stage, &args.look, t)?;
@@ -27,11 +27,14 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let clock = label(stage.path.as_ref(), t);
+    if args.manners.explain {
+        technique.plan().iter().for_each(|line| eprintln!("{line}"));
+    }
     if args.manners.json {
         let report = json!({
             "file": args.output_file, "t": t, "clock": clock, "size": args.look.size, "seconds": seconds,
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
-            "gpu": technique.census(),
+            "gpu": technique.census(), "plan": technique.plan(), "details": technique.details(),
         });
         println!("{report:#}");
     } else if !args.manners.quiet {

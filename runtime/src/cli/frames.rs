@@ -21,7 +21,7 @@ const ANIMATION_MS: [u32; 2] = [6000, 400];
 /// Draws a day.
 pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     set_threads(args.look.threads)?;
-    let stage = stage(&args.set, &args.look, args.output)?;
+    let stage = stage(&args.set, &args.sun, &args.look, args.output)?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let gpu = open_gpu(&args.look, args.manners.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
@@ -53,11 +53,14 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     write_animation(&args.output_folder.join("day.png"), &moving, delay_ms)?;
     drop(terminal);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
+    if args.manners.explain {
+        technique.plan().iter().for_each(|line| eprintln!("{line}"));
+    }
     if args.manners.json {
         let report = json!({
             "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
             "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
-            "bytes": technique.bytes(), "gpu": technique.census(),
+            "bytes": technique.bytes(), "gpu": technique.census(), "plan": technique.plan(), "details": technique.details(),
         });
         println!("{report:#}");
     } else if !args.manners.quiet {

@@ -39,7 +39,7 @@ impl When {
         };
         let Some(path) = path else {
             return Err(Failure::usage(
-                "this set has no sun, so it has no clock: give --at from 0 to 1, or leave it out",
+                "there is no sun, so there is no clock: give --at from 0 to 1, or leave it out",
             ));
         };
         let (Some(start), Some(end)) = (path.clock_min(0.0), path.clock_min(1.0)) else {

@@ -1,5 +1,6 @@
 //! What was built for a stage, counted.
 
+use super::scene::SceneOnGpu;
 use serde::Serialize;
 
 /// Counts of what a renderer holds.
@@ -33,4 +34,29 @@ pub struct Census {
     pub draws: usize,
     /// Bytes of all textures with stored times or ambient light.
     pub map_bytes: u64,
+    /// Pipelines that count volumes in the stencil, or keep what was counted.
+    pub stencil_pipelines: usize,
+    /// Buffers from which volumes are drawn.
+    pub volume_buffers: usize,
+    /// Bytes of these.
+    pub volume_bytes: u64,
+}
+
+impl Census {
+    /// Counts of what every technique shares.
+    pub(super) fn of_scene(scene: &SceneOnGpu) -> Self {
+        let page_groups = scene.pages.iter().filter(|page| page.bind_group.is_some()).count();
+        Self {
+            time_textures: scene.pages.iter().map(|page| page.time_textures).sum(),
+            lamp_bindings: usize::from(scene.frame.lamp.is_some()),
+            ambient_textures: scene.pages.iter().map(|page| page.ambient_textures).sum(),
+            sky_bindings: usize::from(scene.frame.sky.is_some()),
+            base_color_textures: scene.textures.texture_count,
+            vertex_buffers: scene.streams.len(),
+            bind_groups: 1 + page_groups + scene.textures.bind_groups.len(),
+            draws: scene.batches.len(),
+            map_bytes: scene.pages.iter().map(|page| page.bytes).sum(),
+            ..Self::default()
+        }
+    }
 }

@@ -10,7 +10,19 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// The adapter's name, its kind and its driver.
     pub name: String,
+    /// Whether it is a CPU that plays a GPU.
+    pub is_software: bool,
 }
+
+/// What is used where the adapter has it.
+const WANTED: [wgpu::Features; 3] = [
+    // Shadow volumes are counted beside depths in floating point.
+    wgpu::Features::DEPTH32FLOAT_STENCIL8,
+    // Lights are added up in pictures of 32 bits.
+    wgpu::Features::FLOAT32_BLENDABLE,
+    // Passes are timed.
+    wgpu::Features::TIMESTAMP_QUERY,
+];
 
 /// What a GPU could not do.
 #[derive(Debug, thiserror::Error)]
@@ -40,6 +52,14 @@ pub enum GpuError {
         needed: u64,
         /// The adapter's.
         limit: u64,
+    },
+    /// It lacks what a technique is made of.
+    #[error("this GPU cannot {what} ({feature}): draw another --technique")]
+    Lacks {
+        /// What it cannot do.
+        what: &'static str,
+        /// The missing feature's name.
+        feature: &'static str,
     },
     /// It failed while working.
     #[error("the GPU failed {doing}: {reason}; draw with --renderer cpu")]
@@ -72,11 +92,28 @@ impl Gpu {
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|e| GpuError::NoAdapter { reason: e.to_string() })?;
         let info = adapter.get_info();
-        let descriptor =
-            wgpu::DeviceDescriptor { label: Some("sunplay"), required_limits: adapter.limits(), ..Default::default() };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("sunplay"),
+            required_features: WANTED.into_iter().fold(wgpu::Features::empty(), |all, one| all | one)
+                & adapter.features(),
+            required_limits: adapter.limits(),
+            ..Default::default()
+        };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| GpuError::NoDevice { name: info.name.clone(), reason: e.to_string() })?;
-        Ok(Self { device, queue, name: format!("{} ({:?}, {})", info.name, info.device_type, info.driver) })
+        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        let name = format!("{} ({:?}, {})", info.name, info.device_type, info.driver);
+        Ok(Self { device, queue, name, is_software })
+    }
+
+    /// Whether the GPU has a feature, or what it cannot do without.
+    pub(super) fn check_feature(
+        &self,
+        feature: wgpu::Features,
+        what: &'static str,
+        name: &'static str,
+    ) -> Result<(), GpuError> {
+        if self.device.features().contains(feature) { Ok(()) } else { Err(GpuError::Lacks { what, feature: name }) }
     }
 
     /// Runs `work` and turns what the device complains of into an error.

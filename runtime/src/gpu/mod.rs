@@ -1,9 +1,9 @@
 //! Playback on the GPU, without a window.
 //!
-//! Built once per stage: vertex streams, one texture pair a page, base colour textures, one pipeline per variant that
-//! occurs (`program.rs`). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
+//! Built once per stage (`scene.rs`): vertex streams, one texture pair a page, base colour textures; and one pipeline per variant
+//! that occurs (`program.rs`). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
 //! visibility). Depth is reversed and infinite, `Depth32Float`; the second pass draws where depths are equal, so that
-//! each pixel is lit once.
+//! each pixel is lit once. `volumes` puts passes between, and a stencil beside the depths.
 //!
 //! What the scene does not call for is not built: [`Census`] counts, and a test holds the counts against scenes.
 
@@ -15,9 +15,14 @@ mod maps;
 mod program;
 mod readback;
 mod renderer;
+mod scene;
+mod stopwatch;
 mod target;
 mod textures;
+mod volumes;
 
 pub use census::Census;
 pub use device::{Gpu, GpuError};
 pub use renderer::{Output, Renderer};
+pub use stopwatch::FrameTimes;
+pub use volumes::{FrameReport, LightReport, VolumeRenderer, VolumeSettings};

@@ -2,34 +2,7 @@
 
 use super::batch::BatchKey;
 use super::device::Gpu;
-use super::target::{DEPTH_FORMAT, LIT_FORMAT, VISIBILITY_FORMAT};
-use sunbake_shaders::{Attribute, Filter, Format, PageVariant, Stream, SurfaceVariant};
-
-/// What a pipeline is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Purpose {
-    /// Depths of surfaces.
-    Depth,
-    /// Lit surfaces.
-    Lit,
-    /// Visibility of the sun alone.
-    Visibility,
-    /// Visibility of the lamp alone.
-    LampVisibility,
-    /// The background.
-    Sky,
-}
-
-/// Layouts of the three groups of bindings; those that nothing uses are absent.
-#[derive(Clone, Copy)]
-pub struct Layouts<'a> {
-    /// The frame and the materials.
-    pub frame: &'a wgpu::BindGroupLayout,
-    /// A page's maps.
-    pub page: Option<&'a wgpu::BindGroupLayout>,
-    /// A base colour texture.
-    pub texture: Option<&'a wgpu::BindGroupLayout>,
-}
+use sunbake_shaders::{Attribute, Format, Stream, SurfaceVariant};
 
 /// A pipeline with the vertex streams that it reads, in the order of their slots.
 pub struct Program {
@@ -39,134 +12,115 @@ pub struct Program {
     pub streams: Vec<Stream>,
 }
 
+/// What is run for each corner and each pixel.
+pub struct Source<'a> {
+    /// WGSL.
+    pub text: &'a str,
+    /// Entry point for corners.
+    pub vertex: &'a str,
+    /// Entry point for pixels; none where depth and stencil are all that is wanted.
+    pub fragment: Option<&'a str>,
+    /// What comes with each corner.
+    pub attributes: &'a [Attribute],
+}
+
+/// How what comes out of it meets the pictures.
+pub struct State {
+    /// The picture drawn into, if any.
+    pub target: Option<wgpu::ColorTargetState>,
+    /// Depth and stencil.
+    pub depth_stencil: wgpu::DepthStencilState,
+    /// Whether both sides are drawn; else the one that is counter-clockwise.
+    pub is_two_sided: bool,
+}
+
 impl Program {
-    /// The program that finds depths.
-    pub fn depth(gpu: &Gpu, key: &BatchKey, layouts: Layouts) -> Self {
-        let text = sunbake_shaders::depth_shader(key.surface);
-        let attributes = match key.surface.is_cut {
+    /// A program. Bindings that are absent and that nothing follows are left out.
+    pub fn new(gpu: &Gpu, source: &Source<'_>, groups: &[Option<&wgpu::BindGroupLayout>], state: State) -> Self {
+        let label = source.fragment.or(Some(source.vertex));
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label,
+            source: wgpu::ShaderSource::Wgsl(source.text.into()),
+        });
+        let (streams, gpu_attributes) = by_stream(source.attributes);
+        let buffers: Vec<_> = streams
+            .iter()
+            .zip(&gpu_attributes)
+            .map(|(stream, attributes)| {
+                Some(wgpu::VertexBufferLayout {
+                    array_stride: stream.stride(),
+                    step_mode: wgpu::VertexStepMode::Vertex,
+                    attributes,
+                })
+            })
+            .collect();
+        let used = groups.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label,
+            bind_group_layouts: &groups[..used],
+            immediate_size: 0,
+        });
+        let targets: Vec<_> = state.target.into_iter().map(Some).collect();
+        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label,
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(source.vertex),
+                compilation_options: Default::default(),
+                buffers: &buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: (!state.is_two_sided).then_some(wgpu::Face::Back),
+                ..Default::default()
+            },
+            depth_stencil: Some(state.depth_stencil),
+            multisample: Default::default(),
+            fragment: source.fragment.map(|entry| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { pipeline, streams }
+    }
+
+    /// The program that finds depths. A surface without holes needs no stage for pixels.
+    pub fn depth(
+        gpu: &Gpu,
+        key: &BatchKey,
+        frame: &wgpu::BindGroupLayout,
+        texture: Option<&wgpu::BindGroupLayout>,
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        let is_cut = key.surface.is_cut;
+        let attributes = match is_cut {
             true => sunbake_shaders::attributes(key.surface),
             false => sunbake_shaders::attributes(SurfaceVariant::default())[..1].to_vec(),
         };
-        let entries = match key.surface.is_cut {
-            true => ("surface_vertex", Some("depth_fragment")),
-            false => ("depth_vertex", None),
+        let source = Source {
+            text: &sunbake_shaders::depth_shader(key.surface),
+            vertex: if is_cut { "surface_vertex" } else { "depth_vertex" },
+            fragment: is_cut.then_some("depth_fragment"),
+            attributes: &attributes,
         };
-        let layouts = Layouts { page: None, texture: layouts.texture.filter(|_| key.surface.is_cut), ..layouts };
-        build(gpu, &text, entries, None, &attributes, Purpose::Depth, key.is_two_sided, layouts)
-    }
-
-    /// The program that draws surfaces.
-    pub fn surface(
-        gpu: &Gpu,
-        purpose: Purpose,
-        key: &BatchKey,
-        page: &PageVariant,
-        filter: Filter,
-        layouts: Layouts,
-    ) -> Self {
-        let (text, entry, format) = match purpose {
-            Purpose::Visibility => (
-                sunbake_shaders::visibility_shader(key.surface, page, filter),
-                "visibility_fragment",
-                VISIBILITY_FORMAT,
-            ),
-            Purpose::LampVisibility => (
-                sunbake_shaders::lamp_visibility_shader(key.surface, page, filter),
-                "lamp_visibility_fragment",
-                VISIBILITY_FORMAT,
-            ),
-            _ => (sunbake_shaders::lit_shader(key.surface, page, filter), "lit_fragment", LIT_FORMAT),
-        };
-        let attributes = sunbake_shaders::attributes(key.surface);
-        let entries = ("surface_vertex", Some(entry));
-        build(gpu, &text, entries, Some(format), &attributes, purpose, key.is_two_sided, layouts)
-    }
-
-    /// The program that draws the background.
-    pub fn sky(gpu: &Gpu, layouts: Layouts) -> Self {
-        let layouts = Layouts { page: None, texture: None, ..layouts };
-        let entries = ("sky_vertex", Some("sky_fragment"));
-        build(gpu, &sunbake_shaders::sky_shader(), entries, Some(LIT_FORMAT), &[], Purpose::Sky, true, layouts)
+        let depth_stencil = depth_state(format, true, wgpu::CompareFunction::Greater);
+        let state = State { target: None, depth_stencil, is_two_sided: key.is_two_sided };
+        Self::new(gpu, &source, &[Some(frame), None, texture.filter(|_| is_cut)], state)
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "one call a kind of program; a struct would only name them twice")]
-fn build(
-    gpu: &Gpu,
-    text: &str,
-    (vertex, fragment): (&str, Option<&str>),
-    format: Option<wgpu::TextureFormat>,
-    attributes: &[Attribute],
-    purpose: Purpose,
-    is_two_sided: bool,
-    layouts: Layouts,
-) -> Program {
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(vertex),
-        source: wgpu::ShaderSource::Wgsl(text.into()),
-    });
-    let (streams, gpu_attributes) = by_stream(attributes);
-    let buffers: Vec<_> = streams
-        .iter()
-        .zip(&gpu_attributes)
-        .map(|(stream, attributes)| {
-            Some(wgpu::VertexBufferLayout {
-                array_stride: stream.stride(),
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes,
-            })
-        })
-        .collect();
-    let groups = bind_group_layouts(layouts);
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(vertex),
-        bind_group_layouts: &groups,
-        immediate_size: 0,
-    });
-    let targets: Vec<_> = format.map(|format| Some(format.into())).into_iter().collect();
-    let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: fragment.or(Some(vertex)),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex),
-            compilation_options: Default::default(),
-            buffers: &buffers,
-        },
-        primitive: wgpu::PrimitiveState {
-            cull_mode: (!is_two_sided).then_some(wgpu::Face::Back),
-            ..Default::default()
-        },
-        depth_stencil: Some(depth_state(purpose)),
-        multisample: Default::default(),
-        fragment: fragment.map(|entry| wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(entry),
-            compilation_options: Default::default(),
-            targets: &targets,
-        }),
-        multiview_mask: None,
-        cache: None,
-    });
-    Program { pipeline, streams }
-}
-
-/// Group 0 is always there; later groups may be absent, and trailing absences are left out.
-fn bind_group_layouts(layouts: Layouts<'_>) -> Vec<Option<&wgpu::BindGroupLayout>> {
-    let mut groups = vec![Some(layouts.frame), layouts.page, layouts.texture];
-    while groups.last().is_some_and(Option::is_none) {
-        groups.pop();
-    }
-    groups
-}
-
-fn depth_state(purpose: Purpose) -> wgpu::DepthStencilState {
-    let (writes, compare) = match purpose {
-        Purpose::Depth => (true, wgpu::CompareFunction::Greater),
-        _ => (false, wgpu::CompareFunction::Equal),
-    };
+/// Depth that is compared and, if asked for, written; the stencil left alone.
+pub fn depth_state(
+    format: wgpu::TextureFormat,
+    writes: bool,
+    compare: wgpu::CompareFunction,
+) -> wgpu::DepthStencilState {
     wgpu::DepthStencilState {
-        format: DEPTH_FORMAT,
+        format,
         depth_write_enabled: Some(writes),
         depth_compare: Some(compare),
         stencil: Default::default(),

@@ -2,15 +2,31 @@
 
 use super::device::{Gpu, GpuError};
 use super::target::Target;
+use glam::Vec3;
+
+/// Colours from the floats of a picture of four channels.
+pub fn colors(floats: &[f32]) -> Vec<Vec3> {
+    floats.chunks_exact(4).map(|c| Vec3::new(c[0], c[1], c[2])).collect()
+}
 
 /// The picture's floats, `channels` a pixel, in row order.
-pub fn read(
+pub fn read(gpu: &Gpu, target: &Target, channels: u32, encoder: wgpu::CommandEncoder) -> Result<Vec<f32>, GpuError> {
+    floats(gpu, target.picture.as_image_copy(), target.size, channels, encoder)
+}
+
+/// The depths beside a picture, as they are stored, in row order.
+pub fn read_depths(gpu: &Gpu, target: &Target) -> Result<Vec<f32>, GpuError> {
+    let source = wgpu::TexelCopyTextureInfo { aspect: wgpu::TextureAspect::DepthOnly, ..target.depths.as_image_copy() };
+    floats(gpu, source, target.size, 1, gpu.device.create_command_encoder(&Default::default()))
+}
+
+fn floats(
     gpu: &Gpu,
-    target: &Target,
+    source: wgpu::TexelCopyTextureInfo<'_>,
+    [width, height]: [u32; 2],
     channels: u32,
     mut encoder: wgpu::CommandEncoder,
 ) -> Result<Vec<f32>, GpuError> {
-    let [width, height] = target.size;
     let row_bytes = width * channels * 4;
     let padded_bytes = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -22,18 +38,24 @@ pub fn read(
     let layout =
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded_bytes), rows_per_image: Some(height) };
     encoder.copy_texture_to_buffer(
-        target.picture.as_image_copy(),
+        source,
         wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     gpu.queue.submit([encoder.finish()]);
+    let bytes = map(gpu, &buffer)?;
+    let rows = bytes.chunks_exact(padded_bytes as usize);
+    Ok(rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..row_bytes as usize])).collect())
+}
+
+/// What a buffer holds once all that was handed over is done.
+pub fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let (sender, receiver) = std::sync::mpsc::channel();
     // The receiver outlives the callback, so sending cannot fail.
     buffer.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-    let wrong = |e: &dyn std::fmt::Display| GpuError::failed("reading a picture back", e);
+    let wrong = |e: &dyn std::fmt::Display| GpuError::failed("reading back", e);
     gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| wrong(&e))?;
     receiver.recv().map_err(|e| wrong(&e))?.map_err(|e| wrong(&e))?;
     let mapped = buffer.get_mapped_range(..).map_err(|e| wrong(&e))?;
-    let rows = mapped.chunks_exact(padded_bytes as usize);
-    Ok(rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..row_bytes as usize])).collect())
+    Ok(mapped.to_vec())
 }

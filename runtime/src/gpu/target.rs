@@ -9,6 +9,9 @@ pub const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float
 /// Format of depths.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// Format of depths beside which volumes are counted.
+pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32FloatStencil8;
+
 /// A picture and its depths.
 pub struct Target {
     /// In pixels.
@@ -17,13 +20,20 @@ pub struct Target {
     pub picture: wgpu::Texture,
     /// The same, to draw into.
     pub view: wgpu::TextureView,
-    /// Depths.
+    /// Depths, and the stencil beside them if there is one.
+    pub depths: wgpu::Texture,
+    /// The same, to draw into.
     pub depth: wgpu::TextureView,
 }
 
 impl Target {
-    /// A picture of a size and format.
-    pub fn new(gpu: &Gpu, size: [u32; 2], format: wgpu::TextureFormat) -> Result<Self, GpuError> {
+    /// A picture of a size and format, with depths.
+    pub fn new(
+        gpu: &Gpu,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+        depth_format: wgpu::TextureFormat,
+    ) -> Result<Self, GpuError> {
         let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
         GpuError::check_limit("the longer edge of the picture", u64::from(size[0].max(size[1])), limit)?;
         let make = |label, format, usage| {
@@ -39,9 +49,11 @@ impl Target {
             })
         };
         let drawn = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let picture = make("picture", format, drawn | wgpu::TextureUsages::COPY_SRC);
-        let depth = make("depth", DEPTH_FORMAT, drawn);
-        let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        Ok(Self { size, view: view(&picture), depth: view(&depth), picture })
+        gpu.checked("making a picture of this size; give a smaller --size", || {
+            let picture = make("picture", format, drawn | wgpu::TextureUsages::COPY_SRC);
+            let depth = make("depth", depth_format, drawn | wgpu::TextureUsages::COPY_SRC);
+            let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+            Self { size, view: view(&picture), depth: view(&depth), picture, depths: depth }
+        })
     }
 }

@@ -31,7 +31,12 @@ pub struct LampMoment {
     pub radius_m: f32,
     /// Its light on a surface that faces it from a metre away.
     pub light: Vec3,
+    /// How far its light goes, beyond which none of it is seen: [`WITHOUT_END`], unless it is cut off to save work.
+    pub range_m: f32,
 }
+
+/// Range of a lamp that lights all that sees it. Its square is a number still.
+pub const WITHOUT_END: f32 = 1e18;
 
 impl LampMoment {
     /// The lamp at `t` of its path (bake space), in a scene of this half size.
@@ -44,6 +49,7 @@ impl LampMoment {
             width_t: (end - start) as f32,
             radius_m: path.radius_m() as f32,
             light: REFERENCE_LIGHT * (reference_m * reference_m) as f32,
+            range_m: WITHOUT_END,
         }
     }
 
@@ -61,13 +67,17 @@ impl LampMoment {
             width_t: self.width_t,
             radius_m: self.radius_m,
             balls_per_metre: self.balls_per_metre(),
-            pad: [0.0; 2],
+            range_m: self.range_m,
+            pad: 0.0,
         }
     }
 
     /// Its light on a matt surface, a share `seen` of it: twin of `lamp_shade.wgsl`.
     pub fn on(&self, base_color: Vec3, normal: Vec3, way_m: Vec3, seen: f32) -> Vec3 {
         let distance2 = way_m.length_squared().max(1e-12);
+        if distance2 > self.range_m * self.range_m {
+            return Vec3::ZERO;
+        }
         let lambert = (normal.dot(way_m) / distance2.sqrt()).max(0.0);
         base_color * self.light * (seen * lambert / (distance2 + self.radius_m * self.radius_m))
     }

@@ -11,11 +11,13 @@
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
 //! is measured: it is there so that the shadows under study fall in a believable light.
 
+pub(crate) mod disc;
 mod lamp;
 mod sky;
 mod tone;
 
-pub use lamp::LampMoment;
+pub use disc::SunDisc;
+pub use lamp::{LampMoment, WITHOUT_END};
 pub use tone::{codes_from_display, display_from_light};
 
 use crate::camera::View;

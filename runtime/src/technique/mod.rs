@@ -6,10 +6,12 @@
 mod baked_cpu;
 mod baked_gpu;
 mod truth;
+mod volumes;
 
 pub use baked_cpu::BakedCpu;
 pub use baked_gpu::BakedGpu;
-pub use truth::Truth;
+pub use truth::{Light, Truth};
+pub use volumes::Volumes;
 
 use crate::gpu::{Census, GpuError};
 use crate::image::Raster;
@@ -38,6 +40,21 @@ pub trait Technique {
 
     /// Bytes it keeps from frame to frame, beyond the scene itself.
     fn bytes(&self) -> u64;
+
+    /// The picture with what finds its shadows made visible; none where that is nothing one could see.
+    fn shown(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
+        Ok(None)
+    }
+
+    /// What it decided for the last frame, and why, in words; nothing where there is nothing to decide.
+    fn plan(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The same for machines; null where there is nothing to decide.
+    fn details(&self) -> serde_json::Value {
+        serde_json::Value::Null
+    }
 
     /// What was built on the GPU for it; none where the CPU draws.
     fn census(&self) -> Option<Census> {

@@ -15,14 +15,13 @@
 use super::Technique;
 use crate::gpu::GpuError;
 use crate::image::Raster;
-use crate::light::Moment;
+use crate::light::{LampMoment, Moment, SunDisc, disc};
 use crate::shot::Shot;
-use glam::DVec3;
+use crate::stage::Stage;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit};
-
-/// The angle between neighbours of the spiral: a full turn over the square of the golden ratio.
-const GOLDEN_ANGLE_RAD: f64 = 2.399_963_229_728_653;
 
 /// Rays to the sun.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,11 +39,19 @@ impl Truth {
     /// Rays over the disc, unless told otherwise.
     pub const DEFAULT_RAYS: u32 = 64;
 
-    fn lamp_seen(self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &Ball) -> f32 {
-        let tracer = shot.stage.tracer();
-        let Seat { face, point_m, origin_m } = Seat::new(shot, pixel, hit);
+    fn lamp_seen(
+        self,
+        stage: &Stage,
+        &Seat { face, on_plane_m, point_m, origin_m }: &Seat,
+        pixel: usize,
+        lamp: &Ball,
+    ) -> f32 {
+        if point_m.distance(lamp.centre_m) > lamp.range_m {
+            return 0.0;
+        }
+        let tracer = stage.tracer();
         let reaches =
-            |lamp_m: DVec3| face.dot(lamp_m - point_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
+            |lamp_m: DVec3| face.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
         match self {
             Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
             Self::Soft { rays } => {
@@ -54,9 +61,21 @@ impl Truth {
         }
     }
 
-    fn seen(self, shot: &Shot, pixel: usize, hit: &Hit, sun: &Sun) -> f32 {
-        let tracer = shot.stage.tracer();
-        let Seat { face, origin_m, .. } = Seat::new(shot, pixel, hit);
+    /// How much of the sun's centre, or of the lamp's, a point sees that a ray has met, moved back along the ray by a step.
+    pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: Light) -> f32 {
+        let mut seat = Seat::new(stage, ray, hit);
+        let back_m = ray.as_dvec3().normalize() * step_m;
+        seat.point_m -= back_m;
+        seat.origin_m -= back_m;
+        match (light, &stage.path, &moment.lamp) {
+            (Light::Sun, Some(path), _) => Self::Hard.seen(stage, &seat, 0, &sun_of(path, moment)),
+            (Light::Lamp, _, Some(lamp)) => Self::Hard.lamp_seen(stage, &seat, 0, &ball_of(lamp)),
+            _ => 0.0,
+        }
+    }
+
+    fn seen(self, stage: &Stage, &Seat { face, origin_m, .. }: &Seat, pixel: usize, sun: &SunDisc) -> f32 {
+        let tracer = stage.tracer();
         let reaches = |direction: DVec3| {
             direction.y > 0.0 && face.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
         };
@@ -73,17 +92,20 @@ impl Truth {
 /// What a pixel shows, as the start of rays: the side that the eye is on.
 struct Seat {
     face: DVec3,
+    /// A corner: by it all points of a triangle agree about whether a lamp stands before their plane.
+    on_plane_m: DVec3,
     point_m: DVec3,
     origin_m: DVec3,
 }
 
 impl Seat {
-    fn new(shot: &Shot, pixel: usize, hit: &Hit) -> Self {
+    fn new(stage: &Stage, ray: Vec3, hit: &Hit) -> Self {
         let triangle = hit.triangle as usize;
-        let front = shot.stage.geometry.normal(triangle);
-        let face = if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front };
-        let point_m = shot.stage.geometry.point(triangle, hit.barycentric);
-        Self { face, point_m, origin_m: shot.stage.tracer().lift(point_m, face, hit.triangle) }
+        let front = stage.geometry.normal(triangle);
+        let face = if front.dot(ray.as_dvec3()) > 0.0 { -front } else { front };
+        let point_m = stage.geometry.point(triangle, hit.barycentric);
+        let on_plane_m = stage.geometry.triangles[triangle][0].as_dvec3();
+        Self { face, on_plane_m, point_m, origin_m: stage.tracer().lift(point_m, face, hit.triangle) }
     }
 }
 
@@ -96,24 +118,28 @@ impl Technique for Truth {
     }
 
     fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
-        let sun =
-            shot.stage.path.as_ref().map(|path| Sun::new(path.direction(f64::from(moment.t)), path.angular_radius_rad));
+        let sun = shot
+            .stage
+            .path
+            .as_ref()
+            .map(|path| SunDisc::new(path.direction(f64::from(moment.t)), path.angular_radius_rad));
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &sun) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(sun)) => self.seen(shot, pixel, hit, sun),
+            (Some(hit), Some(sun)) => self.seen(shot.stage, &Seat::new(shot.stage, shot.ray(pixel), hit), pixel, sun),
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
     }
 
     fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
-        let lamp =
-            moment.lamp.map(|lamp| Ball { centre_m: lamp.position_m.as_dvec3(), radius_m: f64::from(lamp.radius_m) });
+        let lamp = moment.lamp.as_ref().map(ball_of);
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &lamp) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(lamp)) => self.lamp_seen(shot, pixel, hit, lamp),
+            (Some(hit), Some(lamp)) => {
+                self.lamp_seen(shot.stage, &Seat::new(shot.stage, shot.ray(pixel), hit), pixel, lamp)
+            }
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -124,32 +150,29 @@ impl Technique for Truth {
     }
 }
 
-/// The sun's disc.
-struct Sun {
-    centre: DVec3,
-    across: [DVec3; 2],
-    radius_rad: f64,
+fn sun_of(path: &SunPath, moment: &Moment) -> SunDisc {
+    SunDisc::new(path.direction(f64::from(moment.t)), path.angular_radius_rad)
 }
 
-impl Sun {
-    fn new(centre: DVec3, radius_rad: f64) -> Self {
-        Self { centre, across: centre.any_orthonormal_pair().into(), radius_rad }
-    }
+fn ball_of(lamp: &LampMoment) -> Ball {
+    let [radius_m, range_m] = [lamp.radius_m, lamp.range_m].map(f64::from);
+    Ball { centre_m: lamp.position_m.as_dvec3(), radius_m, range_m }
+}
 
-    /// The direction of ray `i` of `count`, the spiral turned by `turn`: even by area over the disc.
-    fn direction(&self, i: u32, count: u32, turn: f64) -> DVec3 {
-        let share = (f64::from(i) + 0.5) / f64::from(count);
-        let from_centre = 1.0 - (1.0 - self.radius_rad.cos()) * share;
-        let (sin, cos) = (f64::from(i) * GOLDEN_ANGLE_RAD + turn).sin_cos();
-        let across = self.across[0] * cos + self.across[1] * sin;
-        (self.centre * from_centre + across * (1.0 - from_centre * from_centre).max(0.0).sqrt()).normalize()
-    }
+/// A light of a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Light {
+    /// Far away.
+    Sun,
+    /// In the scene.
+    Lamp,
 }
 
 /// A lamp.
 struct Ball {
     centre_m: DVec3,
     radius_m: f64,
+    range_m: f64,
 }
 
 impl Ball {
@@ -157,7 +180,7 @@ impl Ball {
     fn point(&self, from_m: DVec3, i: u32, count: u32, turn: f64) -> DVec3 {
         let Some(way) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };
         let (across, up) = way.any_orthonormal_pair();
-        let (sin, cos) = (f64::from(i) * GOLDEN_ANGLE_RAD + turn).sin_cos();
+        let (sin, cos) = (f64::from(i) * disc::GOLDEN_ANGLE_RAD + turn).sin_cos();
         let from_centre_m = self.radius_m * ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
         self.centre_m + (across * cos + up * sin) * from_centre_m
     }
@@ -168,20 +191,4 @@ fn turn_of_pixel(pixel: usize) -> f64 {
     let state = (pixel as u32).wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
     f64::from((word >> 22) ^ word) / f64::from(u32::MAX) * std::f64::consts::TAU
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rays_cover_the_disc_evenly_and_no_more() {
-        let sun = Sun::new(DVec3::new(0.3, 0.8, -0.2).normalize(), 0.1);
-        let directions: Vec<DVec3> = (0..4096).map(|i| sun.direction(i, 4096, 0.7)).collect();
-        assert!(directions.iter().all(|d| d.angle_between(sun.centre) <= 0.1 + 1e-9));
-        let within_half = directions.iter().filter(|d| d.angle_between(sun.centre) < 0.05).count();
-        assert!((within_half as f64 / 4096.0 - 0.25).abs() < 0.01);
-        let on_one_side = directions.iter().filter(|d| d.dot(sun.across[0]) > 0.0).count();
-        assert!((on_one_side as f64 / 4096.0 - 0.5).abs() < 0.01);
-    }
 }

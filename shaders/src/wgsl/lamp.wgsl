@@ -6,6 +6,7 @@ struct Lamp {
     width_t: f32,
     radius_m: f32,
     balls_per_metre: f32,
+    range_m: f32,
 }
 
 @group(0) @binding(2) var<uniform> lamp: Lamp;

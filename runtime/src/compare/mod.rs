@@ -4,6 +4,10 @@
 //! every number, they may still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it
 //! lies: pixels within one pixel of such an edge are counted apart ([`edges`]).
 
+mod mask;
+
+pub use mask::{FINE_PX, MaskAgreement};
+
 use crate::image::Raster;
 use crate::light::{codes_from_display, display_from_light};
 use crate::shot::Shot;

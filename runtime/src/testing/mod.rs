@@ -1,5 +1,7 @@
 //! Sets baked by code from scenes made by code, for tests of this crate and of those above it. Not part of the tool.
 
+pub mod masks;
+
 use crate::camera::{Camera, View};
 use crate::compare::{Agreement, color_difference, edges, visibility_difference};
 use crate::gpu::GpuError;

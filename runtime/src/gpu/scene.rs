@@ -1,0 +1,106 @@
+//! A stage's surfaces on the GPU: what every technique that draws there shares.
+
+use super::batch::{Batch, BatchKey, batches};
+use super::buffers::{FrameBindings, upload_streams};
+use super::device::{Gpu, GpuError};
+use super::maps::PageTextures;
+use super::program::Program;
+use super::textures::BaseTextures;
+use crate::playback::page_variant;
+use crate::stage::Stage;
+use std::collections::BTreeMap;
+use sunbake_shaders::{PageVariant, Stream};
+
+/// Surfaces, their maps and their textures.
+pub struct SceneOnGpu {
+    /// Draws.
+    pub batches: Vec<Batch>,
+    /// Vertex buffers.
+    pub streams: BTreeMap<Stream, wgpu::Buffer>,
+    /// Maps.
+    pub pages: Vec<PageTextures>,
+    /// Base colour textures.
+    pub textures: BaseTextures,
+    /// The frame's own buffers.
+    pub frame: FrameBindings,
+}
+
+impl SceneOnGpu {
+    /// Uploads a stage.
+    pub fn new(gpu: &Gpu, stage: &Stage) -> Result<Self, GpuError> {
+        let (batches, vertices) = batches(stage);
+        let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
+        let page = |maps| PageTextures::new(gpu, maps, stage.bits, page_variant(maps, stage.bits, radius_rad));
+        let pages = stage.pages.iter().map(page).collect::<Result<_, _>>()?;
+        let keys = batches.iter().filter_map(|batch| batch.key.texture).collect();
+        Ok(Self {
+            streams: upload_streams(gpu, &vertices)?,
+            batches,
+            pages,
+            textures: BaseTextures::new(gpu, stage, &keys)?,
+            frame: FrameBindings::new(gpu, stage),
+        })
+    }
+
+    /// How a batch's page is read.
+    pub fn variant(&self, key: &BatchKey) -> &PageVariant {
+        &self.pages[key.page as usize].variant
+    }
+
+    /// The key of a batch's program: pages that programs read alike share one.
+    pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
+        let variant = self.variant(key);
+        let page = self.pages.iter().position(|p| p.variant == *variant).unwrap_or(0) as u32;
+        BatchKey { page, texture: None, ..*key }
+    }
+
+    /// Layouts of the bindings of a program that shades a batch.
+    pub fn groups(&self, key: &BatchKey) -> [Option<&wgpu::BindGroupLayout>; 3] {
+        let texture = self.textures.layout.as_ref().filter(|_| key.surface.is_textured);
+        [Some(&self.frame.layout), self.pages[key.page as usize].layout.as_ref(), texture]
+    }
+
+    /// The program that finds a batch's depths.
+    pub fn depth_program(&self, gpu: &Gpu, key: &BatchKey, format: wgpu::TextureFormat) -> Program {
+        let texture = self.textures.layout.as_ref().filter(|_| key.surface.is_textured);
+        Program::depth(gpu, key, &self.frame.layout, texture, format)
+    }
+
+    /// Draws depths.
+    pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
+        self.draw_with(pass, batch, program, batch.key.surface.is_cut);
+    }
+
+    /// Draws surfaces.
+    pub fn draw_surface(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
+        pass.set_bind_group(1, self.pages[batch.key.page as usize].bind_group.as_ref(), &[]);
+        self.draw_with(pass, batch, program, true);
+    }
+
+    /// Draws surfaces with programs that read no maps.
+    pub fn draw_without_page(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
+        self.draw_with(pass, batch, program, true);
+    }
+
+    fn draw_with(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program, wants_texture: bool) {
+        pass.set_pipeline(&program.pipeline);
+        if let Some(texture) = batch.key.texture.filter(|_| wants_texture) {
+            pass.set_bind_group(2, &self.textures.bind_groups[&texture], &[]);
+        }
+        for (slot, stream) in program.streams.iter().enumerate() {
+            let first = match stream {
+                Stream::Position | Stream::Surface => batch.first,
+                Stream::Texture => batch.first_texture,
+                Stream::Color => batch.first_color,
+            };
+            pass.set_vertex_buffer(slot as u32, self.streams[stream].slice(first * stream.stride()..));
+        }
+        pass.draw(0..batch.vertex_count, 0..1);
+    }
+}
+
+/// The key of a batch's depth program, which knows of pages and textures only what holes need.
+pub fn depth_key(key: &BatchKey) -> BatchKey {
+    let surface = if key.surface.is_cut { key.surface } else { Default::default() };
+    BatchKey { surface, page: 0, texture: None, ..*key }
+}

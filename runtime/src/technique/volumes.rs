@@ -1,0 +1,131 @@
+//! Shadow volumes, live: what the sun's centre or the lamp's does not see is found anew for each moment.
+//!
+//! Passes: depth, what comes from all around, and for each light its volumes and what it adds. Targets: a picture, and its
+//! depths with a stencil. Kept: the casters' points, and the volumes of the last light. Exact for each pixel's centre, with
+//! hard edges; wrong where leaves are cut out of cards, whose whole cards cast, and where a shadow is shallower than a 64th of a
+//! pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies on it.
+
+use super::Technique;
+use crate::gpu::{Census, FrameReport, Gpu, GpuError, VolumeRenderer, VolumeSettings};
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::shot::Shot;
+use crate::stage::Stage;
+use crate::volumes::{CasterCounts, Mode};
+use glam::Vec3;
+
+/// Shadow volumes on the GPU.
+pub struct Volumes<'g> {
+    renderer: VolumeRenderer<'g>,
+    settings: VolumeSettings,
+}
+
+impl<'g> Volumes<'g> {
+    /// Uploads a stage and welds its casters.
+    pub fn new(gpu: &'g Gpu, stage: &Stage, settings: VolumeSettings) -> Result<Self, GpuError> {
+        Ok(Self { renderer: VolumeRenderer::new(gpu, stage, settings)?, settings })
+    }
+
+    /// What the last frame was made of.
+    pub fn report(&self) -> &FrameReport {
+        self.renderer.report()
+    }
+
+    /// What there is to cast.
+    pub fn caster_counts(&self) -> CasterCounts {
+        self.renderer.caster_counts()
+    }
+
+    /// What draws.
+    pub fn renderer(&mut self) -> &mut VolumeRenderer<'g> {
+        &mut self.renderer
+    }
+}
+
+impl Technique for Volumes<'_> {
+    fn name(&self) -> String {
+        self.settings.mode.to_string()
+    }
+
+    fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.visibility(&shot.view, moment)? })
+    }
+
+    fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.lamp_visibility(&shot.view, moment)? })
+    }
+
+    fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
+        Ok(Raster { size: shot.view.size, pixels: self.renderer.lit(&shot.view, moment)? })
+    }
+
+    fn shown(&mut self, shot: &Shot, moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
+        Ok(Some(Raster { size: shot.view.size, pixels: self.renderer.shown(&shot.view, moment)? }))
+    }
+
+    fn bytes(&self) -> u64 {
+        let census = self.renderer.census();
+        census.volume_bytes + census.map_bytes
+    }
+
+    fn census(&self) -> Option<Census> {
+        Some(self.renderer.census())
+    }
+
+    fn details(&self) -> serde_json::Value {
+        serde_json::json!({ "casters": self.renderer.caster_counts(), "frame": self.renderer.report() })
+    }
+
+    fn plan(&self) -> Vec<String> {
+        let casters = self.renderer.caster_counts();
+        let mut lines = vec![
+            format!(
+                "casters: {} triangles in {} casters; {} solid bodies ({} of them turned over), {} open ones; {} open edges, {} \
+                 edges of three triangles or more",
+                casters.triangles,
+                casters.casters,
+                casters.solid_bodies + casters.turned_bodies,
+                casters.turned_bodies,
+                casters.open_bodies,
+                casters.open_edges,
+                casters.crowded_edges
+            ),
+            format!(
+                "solid bodies throw silhouettes of what faces the light, open ones of every triangle, and {} casters that share \
+                 next to no edges a prism a triangle",
+                casters.soups
+            ),
+        ];
+        if casters.cut_triangles > 0 {
+            lines.push(format!(
+                "{} triangles have holes cut by alpha: volumes do not see holes, and their whole cards cast",
+                casters.cut_triangles
+            ));
+        }
+        for light in &self.renderer.report().lights {
+            let plan = &light.plan;
+            lines.push(format!(
+                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted before the \
+                 surface, {} behind it ({} without caps); {} triangles in {}",
+                light.light,
+                plan.casters,
+                plan.casting_nothing,
+                plan.out_of_view,
+                plan.shading_nothing,
+                plan.z_pass,
+                plan.z_fail,
+                plan.without_caps,
+                light.triangles,
+                if light.runs == 1 { "one run".into() } else { format!("{} runs, since more than 255 may overlap", light.runs) }
+            ));
+            if plan.replaced > 0 && self.settings.mode == Mode::ZPass {
+                lines.push(format!(
+                    "{}: z-pass would be wrong for {} casters (the eye may be in their volumes, or a cap shows): they are \
+                     counted behind the surface instead",
+                    light.light, plan.replaced
+                ));
+            }
+        }
+        lines
+    }
+}

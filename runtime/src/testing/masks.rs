@@ -1,0 +1,168 @@
+//! Hard masks held against hard truth, and every way of drawing them against the others.
+
+use super::standing_sun;
+use crate::camera::{Camera, View};
+use crate::compare::MaskAgreement;
+use crate::gpu::{Gpu, VolumeSettings};
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::shot::Shot;
+use crate::stage::Stage;
+use crate::technique::{Light, Technique, Truth, Volumes};
+use crate::volumes::{Mode, Savings};
+use glam::{DMat3, DVec3};
+use sunbake::lamp::{LampKey, LampPath};
+use sunbake::scene::{Alpha, Scene};
+use sunbake::trace::Direction;
+
+/// A scene under a sun that stands still at t = 1/2.
+pub fn under_sun(scene: Scene, towards: DVec3) -> Stage {
+    Stage::plain(scene, Some(standing_sun(towards, 0.0047)))
+}
+
+/// A scene with a lamp that is at a place at t = 0.
+pub fn under_lamp(scene: Scene, at: DVec3) -> Stage {
+    Stage::plain(scene, None).with_lamp(Some(&lamp_at(at)))
+}
+
+/// A lamp without size that is at a place, world space, at t = 0.
+pub fn lamp_at(place: DVec3) -> LampPath {
+    let key = |t, x| LampKey { t, position_m: place + DVec3::X * x };
+    LampPath::new(vec![key(0.0, 0.0), key(1.0, 1.0)], 0.0, 10.0).expect("the lamp moves")
+}
+
+/// Every way of drawing volumes: each mode with all savings, and what savings there are without any.
+pub fn all_ways() -> Vec<VolumeSettings> {
+    let way = |mode, savings| VolumeSettings { mode, savings, ..VolumeSettings::default() };
+    let saved = Mode::ALL.map(|mode| way(mode, Savings::default()));
+    let unsaved = [Mode::Planned, Mode::Triangles, Mode::Gpu].map(|mode| way(mode, Savings::NONE));
+    saved.into_iter().chain(unsaved).collect()
+}
+
+/// A mask of the sun or of the lamp.
+pub fn mask(technique: &mut dyn Technique, shot: &Shot, moment: &Moment, light: Light) -> Raster<f32> {
+    let mask = match light {
+        Light::Sun => technique.visibility(shot, moment),
+        Light::Lamp => technique.lamp_visibility(shot, moment),
+    };
+    mask.unwrap_or_else(|error| panic!("{}: {error}", technique.name()))
+}
+
+/// What one way of drawing volumes makes of a shot, beside truth.
+pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: Light) -> MaskAgreement {
+    let truth = mask(&mut Truth::Hard, shot, moment, light);
+    let found = mask(volumes, shot, moment, light);
+    let depths_m = volumes.renderer().depths_m(&shot.view, light == Light::Lamp).unwrap_or_default();
+    MaskAgreement::new(shot, moment, light, &found, &truth, &depths_m)
+}
+
+/// Asserts that every way of drawing a moment's volumes gives one mask, bit for bit, and that it is right: without excuse
+/// outside of truth's edges, seldom with one, and mostly in the band.
+pub fn assert_right(
+    gpu: &Gpu,
+    name: &str,
+    stage: &Stage,
+    views: &[View],
+    moment: &Moment,
+    light: Light,
+) -> MaskAgreement {
+    let all = assert_ways_agree(gpu, name, stage, views, moment, light);
+    let excused = all.at_fine_edges + all.of_other_surfaces;
+    assert!(all.unexplained.is_empty(), "{name}: wrong at {:?}", all.unexplained);
+    assert!(excused <= all.pixels / 3000, "{name}: {}", all.sentence());
+    assert!(all.wrong_in_band <= 4 + all.in_band / 40, "{name}: {}", all.sentence());
+    all
+}
+
+/// Asserts that every way of drawing a moment's volumes gives one mask, bit for bit. What that is like beside truth.
+pub fn assert_ways_agree(
+    gpu: &Gpu,
+    name: &str,
+    stage: &Stage,
+    views: &[View],
+    moment: &Moment,
+    light: Light,
+) -> MaskAgreement {
+    let (all, differ) = beside_truth(gpu, name, stage, views, moment, light);
+    assert!(differ.is_empty(), "{name} differs from what is planned: {differ:?}");
+    all
+}
+
+/// What the planned way of drawing a moment's volumes is like beside truth, and which other ways differ from it, in how many
+/// pixels.
+pub fn beside_truth(
+    gpu: &Gpu,
+    name: &str,
+    stage: &Stage,
+    views: &[View],
+    moment: &Moment,
+    light: Light,
+) -> (MaskAgreement, Vec<(VolumeSettings, usize)>) {
+    let mut ways: Vec<Volumes> = all_ways()
+        .into_iter()
+        .map(|way| Volumes::new(gpu, stage, way).unwrap_or_else(|e| panic!("{name}: {e}")))
+        .collect();
+    let (mut all, mut differ) = (MaskAgreement::default(), Vec::new());
+    for view in views {
+        let shot = Shot::new(stage, *view);
+        let expected = mask(&mut ways[0], &shot, moment, light);
+        for (way, settings) in ways.iter_mut().zip(all_ways()).skip(1) {
+            let found = mask(way, &shot, moment, light);
+            let count = found.pixels.iter().zip(&expected.pixels).filter(|(a, b)| a != b).count();
+            differ.extend((count > 0).then_some((settings, count)));
+        }
+        let found = agreement(&mut ways[0], &shot, moment, light);
+        all.add(&found);
+    }
+    println!("{name}: {}", all.sentence());
+    (all, differ)
+}
+
+/// The scene with its leaves solid: shadow volumes do not see the holes in cards, and this is what they draw.
+pub fn with_solid_leaves(mut scene: Scene) -> Scene {
+    for material in &mut scene.materials {
+        if matches!(material.alpha, Alpha::Cut { .. }) {
+            material.alpha = Alpha::Opaque;
+        }
+    }
+    scene
+}
+
+/// Four cameras around a stage: its default one, turned about its middle by quarters.
+pub fn cameras_around(stage: &Stage) -> [Camera; 4] {
+    let camera = Camera::default_of(stage, 1.0);
+    [0.0f64, 90.0, 180.0, 270.0].map(|deg| {
+        let turn = DMat3::from_rotation_y(deg.to_radians());
+        Camera {
+            eye_m: turn * camera.eye_m,
+            forward: turn * camera.forward,
+            right: turn * camera.right,
+            up: turn * camera.up,
+            ..camera
+        }
+    })
+}
+
+/// A camera whose eye is in shadow, near a surface, and looks at another one: inside a shadow volume. `pick` chooses which.
+/// None where nothing is in shadow.
+pub fn camera_in_shadow(stage: &Stage, towards_light: DVec3, pick: usize) -> Option<Camera> {
+    let count = stage.geometry.triangles.len();
+    let direction = Direction::new(towards_light);
+    // Steps by a large prime visit triangles in no order that a scene has.
+    let triangle = |i: usize| (pick * 7_919 + i * 104_729) % count;
+    let eyes = (0..count.min(20_000)).filter_map(|i| {
+        let triangle = triangle(i);
+        let normal = stage.geometry.normal(triangle);
+        let above_m = 0.02 * stage.scene.half_extent_m.max_element();
+        let eye_m = stage.geometry.point(triangle, [0.3, 0.3]) + normal * above_m;
+        let is_shaded = normal != DVec3::ZERO && stage.tracer().is_occluded(eye_m, &direction);
+        is_shaded.then_some(eye_m)
+    });
+    let eye_m = eyes.into_iter().next()?;
+    (0..count).find_map(|i| {
+        let target_m = stage.geometry.point(triangle(i + 1), [0.3, 0.3]);
+        let hit = stage.see(eye_m, target_m - eye_m)?;
+        let is_seen = hit.distance_m > 0.05 * stage.scene.half_extent_m.max_element();
+        is_seen.then(|| Camera::look_at(eye_m, target_m, 1.2)).flatten()
+    })
+}

@@ -1,0 +1,135 @@
+//! Which way each caster's triangles face the light: decided once for each triangle, in `f64`, and shared by its edges and
+//! caps, so that no rounding can open a volume.
+
+use super::casters::{Caster, Casters};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A light without size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// So far away that its rays are parallel.
+    Sun {
+        /// Unit vector towards it.
+        towards: DVec3,
+    },
+    /// A point in the scene.
+    Lamp {
+        /// Where it is, bake space.
+        position_m: DVec3,
+        /// How far its light goes; without end where none.
+        range_m: Option<f64>,
+    },
+}
+
+/// What a light makes of the casters' triangles.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Faces {
+    /// For each triangle, how its prism counts: 1 where its front faces the light and casts, -1 where its back does and
+    /// casts, 0 where it casts nothing.
+    pub of_triangle: Vec<i8>,
+    /// For each caster, whether its front faces alone shade all that it does: it bounds solids, and the light is in none of
+    /// them.
+    pub is_solid: Vec<bool>,
+}
+
+/// How near a lamp may come to a triangle before rounding hides on which side of it it is, in steps of the largest coordinate.
+const TOUCH_STEPS: f64 = 8.0;
+/// A step of an `f32`, as a share of its value.
+const STEP: f64 = 1.0 / (1 << 23) as f64;
+
+impl Light {
+    /// How far a triangle turns its front to the light: above zero for fronts, zero for those seen edge on. A lamp that is
+    /// nearer to a triangle's plane than its place can be told is in it.
+    fn front(&self, [a, b, c]: &[DVec3; 3]) -> f64 {
+        let normal = (*b - *a).cross(*c - *a);
+        match self {
+            Self::Sun { towards } => normal.dot(*towards),
+            Self::Lamp { position_m, .. } => {
+                let front = normal.dot(*position_m - *a);
+                if front.abs() <= normal.length() * touch_m(*position_m, *a) { 0.0 } else { front }
+            }
+        }
+    }
+
+    /// Whether the light ends somewhere.
+    pub fn has_range(&self) -> bool {
+        matches!(self, Self::Lamp { range_m: Some(_), .. })
+    }
+
+    fn sees_solid(&self, casters: &Casters, caster: &Caster) -> bool {
+        caster.is_solid
+            && match self {
+                Self::Sun { .. } => true,
+                Self::Lamp { position_m, .. } => !is_inside(casters, caster, *position_m),
+            }
+    }
+
+    /// What the light makes of the triangles. Backs of solids cast nothing that fronts do not, and are left out where
+    /// `spares` says so; what is edge on has no prism.
+    pub fn faces(&self, casters: &Casters, spares: bool) -> Faces {
+        let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
+        let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
+            caster.triangles.clone().into_par_iter().with_min_len(1024).map(move |triangle| {
+                let front = self.front(&casters.corners_m(triangle));
+                i8::from(front > 0.0) - i8::from(front < 0.0 && !(spares && is_solid))
+            })
+        };
+        let of_triangle = casters.all.par_iter().zip(&is_solid).flat_map(of_caster).collect();
+        Faces { of_triangle, is_solid }
+    }
+}
+
+/// How near two places may be and still be one.
+fn touch_m(a: DVec3, b: DVec3) -> f64 {
+    TOUCH_STEPS * STEP * a.abs().max(b.abs()).max_element()
+}
+
+/// Directions of which a ray through modelled things should meet no edge, to all sides.
+const WAYS: [DVec3; 4] = [
+    DVec3::new(0.532_1, 0.717_3, 0.449_7),
+    DVec3::new(-0.671_9, 0.288_3, -0.682_3),
+    DVec3::new(0.193_7, -0.871_1, 0.451_3),
+    DVec3::new(-0.247_1, -0.183_9, 0.951_4),
+];
+
+/// Whether a point may be inside one of a caster's bodies, or on one: some ray from it leaves more often than it enters, or a
+/// triangle is too near to say.
+fn is_inside(casters: &Casters, caster: &Caster, point_m: DVec3) -> bool {
+    let [low, high] = caster.bounds_m;
+    let reach_m = touch_m(point_m, low.abs().max(high.abs()));
+    if point_m.cmplt(low - reach_m).any() || point_m.cmpgt(high + reach_m).any() {
+        return false;
+    }
+    let touches = |triangle: usize| distance_m(&casters.corners_m(triangle), point_m) <= reach_m;
+    let winding = |way: &DVec3| -> i32 {
+        caster.triangles.clone().map(|triangle| crossing(&casters.corners_m(triangle), point_m, *way)).sum()
+    };
+    caster.triangles.clone().any(touches) || WAYS.iter().any(|way| winding(way) != 0)
+}
+
+/// +1 where a ray leaves through a triangle's front, -1 where it enters, 0 where it misses.
+fn crossing(corners: &[DVec3; 3], from: DVec3, way: DVec3) -> i32 {
+    let [a, b, c] = corners.map(|corner| corner - from);
+    let sides = [way.dot(b.cross(a)), way.dot(c.cross(b)), way.dot(a.cross(c))];
+    let normal = (b - a).cross(c - a);
+    let ahead = a.dot(normal) * way.dot(normal);
+    let leaves = sides.iter().all(|&side| side < 0.0);
+    let enters = sides.iter().all(|&side| side > 0.0);
+    if ahead > 0.0 { i32::from(leaves) - i32::from(enters) } else { 0 }
+}
+
+/// Distance from a point to a triangle.
+pub fn distance_m([a, b, c]: &[DVec3; 3], from_m: DVec3) -> f64 {
+    let normal = (*b - *a).cross(*c - *a).normalize_or_zero();
+    let to_edge = |p: &DVec3, q: &DVec3| {
+        let along = *q - *p;
+        let share = ((from_m - *p).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        from_m.distance(*p + along * share)
+    };
+    let is_over = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (**q - **p).cross(from_m - **p).dot(normal) > 0.0);
+    match is_over {
+        true => (from_m - *a).dot(normal).abs(),
+        false => to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a)),
+    }
+}

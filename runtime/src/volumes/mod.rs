@@ -1,0 +1,123 @@
+//! Shadow volumes: what a light's casters shade, as closed bodies whose faces are counted in a stencil (Crow, "Shadow
+//! algorithms for computer graphics", SIGGRAPH 1977; McGuire, "Efficient shadow volume rendering", *GPU Gems* chapter 9).
+//!
+//! Everything here is geometry on the CPU; the passes are in [`crate::gpu`]. It reads in this order:
+//!
+//! ```text
+//! weld      corners at one place become one point, with edges
+//! bodies    which triangles hang together, and which of them bound solids
+//! casters   bodies put together and in order: once per stage
+//! light     which triangles face the light                       } once per
+//! silhouettes   walls and caps, as indices                       } light
+//! overlap   how many may count at one pixel                      }
+//! culling, plan     what to draw of each caster, and how: once per view
+//! ```
+//!
+//! **Why it is right.** Each triangle that blocks light shades a prism. A volume is a sum of prisms, less walls that cancel
+//! because they are the same triangle turned over; so it is closed, whatever the mesh is like, and the count at a
+//! pixel is the number of prisms that hold its surface. Solids leave out prisms that shade nothing new. One thing is added:
+//! every face is moved away from the eye by a little more than rasterising can misplace it, so that surfaces do not shade
+//! themselves, nor those on which they lie.
+//!
+//! **What it does not do.** Holes cut by alpha are not seen: a leaf casts its whole card. Lights have no size: soft edges
+//! take many lights.
+
+pub mod bodies;
+pub mod casters;
+pub mod culling;
+pub mod light;
+pub mod overlap;
+pub mod plan;
+pub mod silhouettes;
+pub mod weld;
+
+pub use casters::{CasterCounts, Casters};
+pub use light::{Faces, Light};
+pub use plan::{FramePlan, PlanCounts};
+pub use silhouettes::{Extrusion, Part, Parts, Sharing, Volumes};
+
+use std::fmt;
+
+/// How volumes are made and counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// Each caster as suits it: silhouettes from the CPU, before the surface where that is right, else behind it.
+    #[default]
+    Planned,
+    /// Silhouettes from the CPU, all behind the surface.
+    ZFail,
+    /// Silhouettes from the CPU, before the surface wherever that is right.
+    ZPass,
+    /// Each triangle's own prism, behind the surface.
+    Triangles,
+    /// Silhouettes found by the vertex shader.
+    Gpu,
+}
+
+impl Mode {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Planned, Self::ZFail, Self::ZPass, Self::Triangles, Self::Gpu];
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Planned => "volumes",
+            Self::ZFail => "volumes:zfail",
+            Self::ZPass => "volumes:zpass",
+            Self::Triangles => "volumes:triangles",
+            Self::Gpu => "volumes:gpu",
+        })
+    }
+}
+
+/// What may be left out of a frame without changing it. All on, unless something is to be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Savings {
+    /// Casters whose volumes miss the view.
+    pub view_culling: bool,
+    /// Casters whose volumes hold no surface that is in view.
+    pub receiver_culling: bool,
+    /// Caps, where the eye is outside of the volume.
+    pub z_pass: bool,
+    /// Caps that are out of view.
+    pub cap_culling: bool,
+    /// Pixels without surfaces.
+    pub scissor: bool,
+    /// Prisms of a solid's back faces.
+    pub solids: bool,
+    /// Volumes of the last frame, if the light has not moved.
+    pub cache: bool,
+}
+
+impl Default for Savings {
+    fn default() -> Self {
+        Self {
+            view_culling: true,
+            receiver_culling: true,
+            z_pass: true,
+            cap_culling: true,
+            scissor: true,
+            solids: true,
+            cache: true,
+        }
+    }
+}
+
+impl Savings {
+    /// None of them.
+    pub const NONE: Self = Self {
+        view_culling: false,
+        receiver_culling: false,
+        z_pass: false,
+        cap_culling: false,
+        scissor: false,
+        solids: false,
+        cache: false,
+    };
+}
+
+/// As many prisms as the eight bits of a stencil count.
+pub const MOST_COUNTED: usize = 255;
+/// As many as seven bits count, where the eighth remembers what earlier runs found.
+pub const MOST_COUNTED_BY_RUN: usize = 127;

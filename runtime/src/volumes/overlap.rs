@@ -1,0 +1,229 @@
+//! How many prisms may hold one point: eight bits of stencil count to 255, and 256 reads as lit.
+//!
+//! Prisms are seen from the light, where each is its triangle, and what lies over one spot bounds what any pixel can count.
+//! The space of spots is cut in two until those triangles that reach into a cell are few enough, or the cell so small
+//! that cutting does not tell them apart. The sun's view is a plane. A lamp's is the sphere around it, cut as a cube: there a
+//! triangle is a cone of three planes through the lamp. What is counted may be too many, and never too few.
+
+use super::casters::Casters;
+use super::light::Light;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Cuts after which what still overlaps is taken to.
+const DEEPEST: u32 = 48;
+/// Triangles by which a median is told.
+const SAMPLE: usize = 63;
+/// By how much everything is grown: more than rounding to `f32` can shrink it, for places between -1 and 1.
+const GROWTH: f32 = 2e-6;
+
+/// A box with least and greatest coordinates.
+type Bounds = [Vec3; 2];
+
+/// All triangles as the light sees them.
+struct Seen {
+    view: LightView,
+    corners: Vec<[Vec3; 3]>,
+    /// Boxes; empty where a triangle casts nothing.
+    bounds: Vec<Bounds>,
+}
+
+/// Cuts the casting triangles into as few runs as it easily can, none of which has more than `most` prisms over one spot.
+pub fn runs(casters: &Casters, faces: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
+    let casting = faces.iter().filter(|&&face| face != 0).count();
+    if casting <= most {
+        return std::iter::once(0..faces.len()).collect();
+    }
+    let view = LightView::new(casters, light);
+    let seen = |triangle: usize| match faces[triangle] {
+        0 => ([Vec3::ZERO; 3], [Vec3::INFINITY, Vec3::NEG_INFINITY]),
+        _ => view.see(&casters.corners_m(triangle)),
+    };
+    let (corners, bounds) = (0..faces.len()).into_par_iter().map(seen).unzip();
+    let mut found = Vec::new();
+    Seen { view, corners, bounds }.cut(0..faces.len(), most, &mut found);
+    found
+}
+
+impl Seen {
+    fn cut(&self, run: Range<usize>, most: usize, found: &mut Vec<Range<usize>>) {
+        let casting: Vec<u32> = run.clone().filter(|&i| self.bounds[i][0].x.is_finite()).map(|i| i as u32).collect();
+        if casting.len() <= most || !self.exceeds(&casting, self.view.space(), most, 0) {
+            return found.push(run);
+        }
+        let middle = run.start + run.len() / 2;
+        self.cut(run.start..middle, most, found);
+        self.cut(middle..run.end, most, found);
+    }
+
+    /// Where to cut a cell: at the median of the middles of what reaches into it, as far as it does, by a sample. Where a scene
+    /// is dense cells are small, and a wide plain costs no cuts.
+    fn middle(&self, of: &[u32], cell: &Bounds, axis: usize) -> f32 {
+        let middle = |&i: &u32| {
+            let [low, high] = &self.bounds[i as usize];
+            0.5 * (low[axis].max(cell[0][axis]) + high[axis].min(cell[1][axis]))
+        };
+        let mut sample: Vec<f32> = of.iter().step_by(of.len().div_ceil(SAMPLE)).map(middle).collect();
+        let half = sample.len() / 2;
+        *sample.select_nth_unstable_by(half, f32::total_cmp).1
+    }
+
+    /// Whether more than `most` of these triangles, all of which reach into a cell, may reach into some part of it as small
+    /// as cells get.
+    fn exceeds(&self, of: &[u32], cell: Bounds, most: usize, depth: u32) -> bool {
+        if of.len() <= most || !self.view.has_spots_in(&cell) {
+            return false;
+        }
+        if depth == DEEPEST {
+            return true;
+        }
+        let axis = (cell[1] - cell[0]).max_position();
+        let middle = self.middle(of, &cell, axis);
+        let half = |is_upper: bool| {
+            let mut half = cell;
+            half[usize::from(!is_upper)][axis] = middle;
+            let size = (half[1] - half[0]).max_element();
+            let is_kept = |&i: &u32| {
+                let [low, high] = &self.bounds[i as usize];
+                let overlaps = if is_upper { high[axis] >= middle } else { low[axis] <= middle };
+                // Of what is small beside the cell, its box tells enough.
+                let is_small = || (*high - *low).max_element() < 0.5 * size;
+                overlaps && (is_small() || self.view.reaches(&self.corners[i as usize], &half))
+            };
+            let kept: Vec<u32> = of.iter().copied().filter(is_kept).collect();
+            self.exceeds(&kept, half, most, depth + 1)
+        };
+        // Wide calls are worth a thread each, the many small ones are not.
+        match of.len() > 2048 {
+            true => {
+                let (lower, upper) = rayon::join(|| half(false), || half(true));
+                lower || upper
+            }
+            false => half(false) || half(true),
+        }
+    }
+}
+
+/// What the light sees, in coordinates between -1 and 1.
+enum LightView {
+    /// Across the sun's rays.
+    Plane { across: [DVec3; 2], middle_m: DVec3, per_metre: f64 },
+    /// Around a lamp.
+    Sphere { centre_m: DVec3 },
+}
+
+impl LightView {
+    fn new(casters: &Casters, light: &Light) -> Self {
+        match light {
+            Light::Lamp { position_m, .. } => Self::Sphere { centre_m: *position_m },
+            Light::Sun { towards } => {
+                let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+                for caster in &casters.all {
+                    (low, high) = (low.min(caster.bounds_m[0]), high.max(caster.bounds_m[1]));
+                }
+                let per_metre = 1.0 / (0.5 * (high - low).length()).max(f64::MIN_POSITIVE);
+                let (right, up) = towards.any_orthonormal_pair();
+                Self::Plane { across: [right, up], middle_m: 0.5 * (low + high), per_metre }
+            }
+        }
+    }
+
+    /// All that is seen. A plane has no depth to be halved.
+    fn space(&self) -> Bounds {
+        let half = match self {
+            Self::Plane { .. } => Vec3::new(2.0, 2.0, 0.0),
+            Self::Sphere { .. } => Vec3::splat(2.0),
+        };
+        [-half, half]
+    }
+
+    /// Whether a cell holds anything that is seen: of the cube around a lamp, only the sphere.
+    fn has_spots_in(&self, [low, high]: &Bounds) -> bool {
+        match self {
+            Self::Plane { .. } => true,
+            Self::Sphere { .. } => {
+                let nearest = Vec3::ZERO.clamp(*low, *high);
+                let furthest = low.abs().max(high.abs());
+                nearest.length() <= 1.0 + GROWTH && furthest.length() >= 1.0 - GROWTH
+            }
+        }
+    }
+
+    /// A triangle, and its box.
+    fn see(&self, corners: &[DVec3; 3]) -> ([Vec3; 3], Bounds) {
+        match self {
+            Self::Plane { across, middle_m, per_metre } => {
+                let seen = corners.map(|corner| {
+                    let from_middle = (corner - middle_m) * *per_metre;
+                    Vec3::new(from_middle.dot(across[0]) as f32, from_middle.dot(across[1]) as f32, 0.0)
+                });
+                let [low, high] = [seen[0].min(seen[1]).min(seen[2]), seen[0].max(seen[1]).max(seen[2])];
+                (seen, [low - GROWTH, high + GROWTH])
+            }
+            Self::Sphere { centre_m } => {
+                // A spherical triangle lies within the cap around its middle that holds its corners. Beyond a hemisphere the
+                // cap may be the wrong way round, and is taken to be everything.
+                let seen = corners.map(|corner| (corner - centre_m).normalize_or_zero());
+                let middle = (seen[0] + seen[1] + seen[2]).normalize_or_zero();
+                let reach = seen.iter().map(|s| s.distance(middle)).fold(0.0, f64::max);
+                let reach = if reach < 1.4 { reach } else { 2.0 };
+                let bounds = [(middle - reach).as_vec3() - GROWTH, (middle + reach).as_vec3() + GROWTH];
+                (seen.map(|s| s.as_vec3()), bounds)
+            }
+        }
+    }
+
+    /// Whether a triangle may reach into a cell: the cell is not beyond any of its edges.
+    fn reaches(&self, corners: &[Vec3; 3], [low, high]: &Bounds) -> bool {
+        (0..3).all(|k| {
+            let [a, b, c] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
+            let normal = match self {
+                Self::Plane { .. } => Vec3::new(b.y - a.y, a.x - b.x, 0.0),
+                Self::Sphere { .. } => a.cross(b),
+            };
+            let inwards = if normal.dot(c - a) < 0.0 { -normal } else { normal };
+            let furthest = Vec3::select(inwards.cmpgt(Vec3::ZERO), *high, *low) - a;
+            let tolerance = GROWTH * (inwards.abs() + furthest.abs()).element_sum();
+            inwards.dot(furthest) >= -tolerance
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stage::Stage;
+    use glam::Vec2;
+    use sunbake::testing::{SceneBuilder, floor};
+
+    const NOON: Light = Light::Sun { towards: DVec3::Y };
+
+    fn runs_of(sheets: usize, gap: f32, light: &Light) -> usize {
+        let sheet = |i: usize| floor(Vec2::splat(gap * i as f32), Vec2::splat(gap * i as f32 + 1.0), i as f32 * 0.01);
+        let triangles: Vec<_> = (0..sheets).flat_map(sheet).collect();
+        let stage = Stage::plain(SceneBuilder::new().soup(&triangles).build(), None);
+        let casters = Casters::new(&stage);
+        let faces = light.faces(&casters, true).of_triangle;
+        runs(&casters, &faces, light, 255).len()
+    }
+
+    #[test]
+    fn as_many_sheets_as_bits_can_count_are_one_run_and_more_are_several() {
+        // Along the diagonal of a square both of its triangles count.
+        assert_eq!(runs_of(127, 0.0, &NOON), 1);
+        assert!(runs_of(256, 0.0, &NOON) > 1);
+    }
+
+    #[test]
+    fn sheets_side_by_side_are_one_run() {
+        assert_eq!(runs_of(2000, 1.1, &NOON), 1);
+    }
+
+    #[test]
+    fn a_lamp_above_sees_them_alike() {
+        let lamp = Light::Lamp { position_m: DVec3::new(0.0, 30.0, 0.0), range_m: None };
+        assert_eq!(runs_of(100, 0.0, &lamp), 1);
+        assert!(runs_of(300, 0.0, &lamp) > 1);
+    }
+}

@@ -1,0 +1,197 @@
+//! What is drawn of each caster, and why: decided anew for each view, from what the light makes of the scene.
+
+use super::casters::Casters;
+use super::culling::{Frustum, Receivers, Targets, is_in_range};
+use super::light::{Faces, Light};
+use super::silhouettes::{Part, Parts};
+use super::{Mode, Savings};
+use crate::View;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ops::Range;
+
+/// How a caster's volume is counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Draw {
+    /// Faces before the surface, without the casters' own caps: cheaper, and wrong where the eye is in the volume or such a
+    /// cap shows.
+    ZPass {
+        /// With the caps at the far end: needed where that is not at infinity, and one may look in through it.
+        dark_caps: bool,
+    },
+    /// Faces behind the surface: always right.
+    ZFail {
+        /// With the caps at the casters.
+        caps: bool,
+        /// With the caps at infinity.
+        dark_caps: bool,
+    },
+}
+
+impl Draw {
+    /// Whether it takes a part of the volume.
+    fn has(self, part: Part) -> bool {
+        match (self, part) {
+            (_, Part::Walls) => true,
+            (Self::ZFail { caps, .. }, Part::Caps) => caps,
+            (Self::ZFail { dark_caps, .. }, Part::DarkCaps) => dark_caps,
+            (Self::ZPass { dark_caps }, Part::DarkCaps) => dark_caps,
+            (Self::ZPass { .. }, Part::Caps) => false,
+        }
+    }
+}
+
+/// What a frame draws of one light's volumes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FramePlan {
+    /// For each caster, how; none where it is left out.
+    pub draws: Vec<Option<Draw>>,
+    /// Pixels outside of which nothing is drawn: left, top, width, height.
+    pub scissor: [u32; 4],
+    /// What was decided, counted.
+    pub counts: PlanCounts,
+}
+
+/// What was decided, counted.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct PlanCounts {
+    /// Casters.
+    pub casters: usize,
+    /// Left out: they are out of the light's range, or cast nothing in this light.
+    pub casting_nothing: usize,
+    /// Left out: their volumes miss the view.
+    pub out_of_view: usize,
+    /// Left out: their volumes hold no surface that is in view.
+    pub shading_nothing: usize,
+    /// Counted before the surface.
+    pub z_pass: usize,
+    /// Counted behind it.
+    pub z_fail: usize,
+    /// Of those behind it, without caps, which are out of view.
+    pub without_caps: usize,
+    /// Of those behind it, those for which z-pass was asked, and would have been wrong.
+    pub replaced: usize,
+}
+
+impl FramePlan {
+    /// Decides. `faces` are of all runs together.
+    pub fn new(
+        casters: &Casters,
+        receivers: &Receivers,
+        faces: &Faces,
+        light: &Light,
+        view: &View,
+        mode: Mode,
+        savings: Savings,
+    ) -> Self {
+        let frustum = Frustum::new(view);
+        let targets = Targets::new(receivers.in_view(&frustum, light), &frustum, light);
+        let chooser = Chooser { casters, faces, light, frustum: &frustum, targets: &targets, mode, savings };
+        let chosen: Vec<Choice> = (0..casters.all.len()).into_par_iter().map(|i| chooser.choose(i)).collect();
+        let mut counts = PlanCounts { casters: chosen.len(), ..PlanCounts::default() };
+        for choice in &chosen {
+            match choice {
+                Choice::CastingNothing => counts.casting_nothing += 1,
+                Choice::OutOfView => counts.out_of_view += 1,
+                Choice::ShadingNothing => counts.shading_nothing += 1,
+                Choice::Drawn(Draw::ZPass { .. }, _) => counts.z_pass += 1,
+                Choice::Drawn(Draw::ZFail { caps, .. }, is_replaced) => {
+                    counts.z_fail += 1;
+                    counts.without_caps += usize::from(!caps);
+                    counts.replaced += usize::from(*is_replaced);
+                }
+            }
+        }
+        let draw = |choice: &Choice| match choice {
+            Choice::Drawn(draw, _) => Some(*draw),
+            _ => None,
+        };
+        let scissor = match savings.scissor {
+            true => targets.pixels(&frustum, view, light),
+            false => [0, 0, view.size[0], view.size[1]],
+        };
+        Self { draws: chosen.iter().map(draw).collect(), scissor, counts }
+    }
+
+    /// Places of some parts of casters that are counted before the surface or behind it; neighbours joined.
+    pub fn ranges(
+        &self,
+        all: &[Parts],
+        is_z_pass: bool,
+        wanted: &[Part],
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Vec<Range<u32>> {
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        let mut push = |range: Range<u32>| match ranges.last_mut() {
+            _ if range.is_empty() => {}
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => ranges.push(range),
+        };
+        for (caster, (draw, parts)) in self.draws.iter().zip(all).enumerate() {
+            let Some(draw) = draw.filter(|draw| matches!(draw, Draw::ZPass { .. }) == is_z_pass && is_wanted(caster))
+            else {
+                continue;
+            };
+            wanted.iter().filter(|part| draw.has(**part)).for_each(|part| push(part.of(parts)));
+        }
+        ranges
+    }
+
+    /// Whether some caster is drawn.
+    pub fn draws_anything(&self) -> bool {
+        self.scissor[2] > 0 && self.draws.iter().any(Option::is_some)
+    }
+}
+
+enum Choice {
+    CastingNothing,
+    OutOfView,
+    ShadingNothing,
+    /// And whether z-pass was asked for in vain.
+    Drawn(Draw, bool),
+}
+
+struct Chooser<'a> {
+    casters: &'a Casters,
+    faces: &'a Faces,
+    light: &'a Light,
+    frustum: &'a Frustum,
+    targets: &'a Targets,
+    mode: Mode,
+    savings: Savings,
+}
+
+impl Chooser<'_> {
+    fn choose(&self, index: usize) -> Choice {
+        let caster = &self.casters.all[index];
+        let casts = || caster.triangles.clone().any(|triangle| self.faces.of_triangle[triangle] != 0);
+        if !is_in_range(&caster.bounds_m, self.light) || !casts() {
+            return Choice::CastingNothing;
+        }
+        if self.savings.view_culling && self.frustum.misses_volume(&caster.bounds_m, self.light) {
+            return Choice::OutOfView;
+        }
+        if self.savings.receiver_culling && !self.targets.any_behind(caster, self.light) {
+            return Choice::ShadingNothing;
+        }
+        let wants_z_pass = match self.mode {
+            Mode::ZPass => true,
+            Mode::ZFail | Mode::Triangles => false,
+            Mode::Planned | Mode::Gpu => self.savings.z_pass,
+        };
+        if wants_z_pass && self.is_right_before(index) {
+            return Choice::Drawn(Draw::ZPass { dark_caps: self.light.has_range() }, false);
+        }
+        let caps = !self.savings.cap_culling || !self.frustum.misses(&caster.bounds_m);
+        let dark_caps = !self.savings.cap_culling || !self.frustum.misses_far_end(&caster.bounds_m, self.light);
+        Choice::Drawn(Draw::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
+    }
+
+    /// Whether a caster may be counted before the surface without its caps: every cap is hidden by the surface that it lies
+    /// on, and the eye is outside of the volume.
+    fn is_right_before(&self, index: usize) -> bool {
+        let caster = &self.casters.all[index];
+        let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.faces.is_solid[index]);
+        hides_caps && !self.frustum.may_be_shaded_by(self.casters, caster, &self.faces.of_triangle, self.light)
+    }
+}

@@ -1,0 +1,138 @@
+//! Welding: corners at the same place become one point, whatever mesh, primitive or texture seam they come from, and
+//! triangles that share two points share an edge.
+//!
+//! Places are compared bit for bit. A tolerance would move corners, and a shadow volume whose corners are not the very
+//! ones that are drawn does not begin where its surface is.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Triangles over shared points, with their edges.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Welded {
+    /// Where the points are, bake space.
+    pub points_m: Vec<Vec3>,
+    /// Points of each triangle, in the order of its corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Edges: their two points, the lower index first.
+    pub edges: Vec<[u32; 2]>,
+    /// For each edge, where its uses begin; one more entry at the end.
+    pub first_use: Vec<u32>,
+    /// Triangles along each edge.
+    pub uses: Vec<EdgeUse>,
+}
+
+/// A triangle along an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct EdgeUse(u32);
+
+impl EdgeUse {
+    fn new(triangle: u32, is_against: bool) -> Self {
+        Self(triangle << 1 | u32::from(is_against))
+    }
+
+    /// Index of the triangle.
+    pub fn triangle(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    /// +1 where the triangle's corners run from the edge's lower point to its higher, -1 where they run back.
+    pub fn sign(self) -> i32 {
+        1 - 2 * (self.0 & 1) as i32
+    }
+
+    /// Both in one number: twice the triangle, and one more where its corners run back.
+    pub fn code(self) -> u32 {
+        self.0
+    }
+
+    /// The same use by another triangle's number.
+    pub fn renumbered(self, triangle: u32) -> Self {
+        Self(triangle << 1 | self.0 & 1)
+    }
+
+    /// The same use where the triangle's corners, or the edge's points, have changed places.
+    pub fn reversed(self) -> Self {
+        Self(self.0 ^ 1)
+    }
+}
+
+impl Welded {
+    /// Welds triangles, given by their corners. Triangles with two corners at one place have no edges there.
+    pub fn new(corners_m: &[[Vec3; 3]]) -> Self {
+        let (points_m, triangles) = weld(corners_m);
+        let mut directed: Vec<([u32; 2], EdgeUse)> = triangles
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(triangle, points)| {
+                let edge = move |k: usize| {
+                    let (from, to) = (points[k], points[(k + 1) % 3]);
+                    (from != to).then(|| ([from.min(to), from.max(to)], EdgeUse::new(triangle as u32, from > to)))
+                };
+                (0..3).filter_map(edge)
+            })
+            .collect();
+        directed.par_sort_unstable();
+        let mut welded = Self { points_m, triangles, ..Self::default() };
+        for run in directed.chunk_by(|a, b| a.0 == b.0) {
+            welded.edges.push(run[0].0);
+            welded.first_use.push(welded.uses.len() as u32);
+            welded.uses.extend(run.iter().map(|&(_, edge_use)| edge_use));
+        }
+        welded.first_use.push(welded.uses.len() as u32);
+        welded
+    }
+
+    /// Triangles along an edge.
+    pub fn uses_of(&self, edge: usize) -> &[EdgeUse] {
+        &self.uses[self.first_use[edge] as usize..self.first_use[edge + 1] as usize]
+    }
+}
+
+fn weld(corners_m: &[[Vec3; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    // Adding zero makes one of the two zeros.
+    let key = |corner: &Vec3| (*corner + 0.0).to_array().map(f32::to_bits);
+    let flat = corners_m.as_flattened();
+    let mut sorted: Vec<([u32; 3], u32)> = flat.par_iter().enumerate().map(|(i, c)| (key(c), i as u32)).collect();
+    sorted.par_sort_unstable();
+    let mut points_m = Vec::new();
+    let mut triangles = vec![[0; 3]; corners_m.len()];
+    for run in sorted.chunk_by(|a, b| a.0 == b.0) {
+        for &(_, corner) in run {
+            triangles.as_flattened_mut()[corner as usize] = points_m.len() as u32;
+        }
+        points_m.push(flat[run[0].1 as usize]);
+    }
+    (points_m, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sunbake::testing::block;
+
+    #[test]
+    fn a_cube_of_loose_triangles_welds_to_8_points_and_18_edges() {
+        let welded = Welded::new(&block(Vec3::ZERO, Vec3::ONE));
+        // Twelve edges of the cube, and the diagonals of its six faces.
+        assert_eq!((welded.points_m.len(), welded.edges.len()), (8, 18));
+        for edge in 0..18 {
+            let signs: i32 = welded.uses_of(edge).iter().map(|u| u.sign()).sum();
+            assert_eq!((welded.uses_of(edge).len(), signs), (2, 0));
+        }
+    }
+
+    #[test]
+    fn the_two_zeros_are_one_place() {
+        let [a, b, c] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let welded = Welded::new(&[[a, b, c], [Vec3::splat(-0.0), c, b]]);
+        assert_eq!((welded.points_m.len(), welded.edges.len()), (3, 3));
+    }
+
+    #[test]
+    fn a_triangle_with_two_corners_at_one_place_has_no_edge_there() {
+        let welded = Welded::new(&[[Vec3::ZERO, Vec3::ZERO, Vec3::X]]);
+        assert_eq!(welded.edges.len(), 1);
+        assert_eq!(welded.uses_of(0).iter().map(|u| u.sign()).sum::<i32>(), 0);
+    }
+}

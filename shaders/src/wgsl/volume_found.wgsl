@@ -1,0 +1,53 @@
+// Volumes whose silhouettes are found here: every edge is drawn, and those that are none shrink to nothing.
+
+// An edge and two triangles along it: twice their number, and one more where a triangle's corners run from high to low.
+struct Wall {
+    low: u32,
+    high: u32,
+    first: u32,
+    second: u32,
+}
+
+@group(1) @binding(2) var<storage, read> walls: array<Wall>;
+@group(1) @binding(3) var<storage, read> triangles: array<u32>;
+// How each triangle's prism counts, and one: two bits each.
+@group(1) @binding(4) var<storage, read> faces: array<u32>;
+
+const NO_TRIANGLE: u32 = 0xffffffffu;
+const NOWHERE = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+
+fn face(triangle: u32) -> i32 {
+    return i32((faces[triangle >> 4u] >> (2u * (triangle & 15u))) & 3u) - 1;
+}
+
+fn vote(along: u32) -> i32 {
+    if along == NO_TRIANGLE {
+        return 0;
+    }
+    return select(face(along >> 1u), -face(along >> 1u), (along & 1u) == 1u);
+}
+
+// Instance k draws the walls that are there more than k times.
+@vertex
+fn wall_vertex(
+    @builtin(vertex_index) index: u32,
+    @builtin(instance_index) time: u32,
+) -> @builtin(position) @invariant vec4<f32> {
+    let wall = walls[index / WALL_CORNERS];
+    let times = vote(wall.first) + vote(wall.second);
+    if u32(abs(times)) <= time {
+        return NOWHERE;
+    }
+    return corner(wall_corner(wall, index % WALL_CORNERS, times > 0));
+}
+
+@vertex
+fn cap_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
+    let triangle = index / 3u;
+    let facing = face(triangle);
+    if facing == 0 {
+        return NOWHERE;
+    }
+    let k = index % 3u;
+    return corner(triangles[3u * triangle + select(k, (3u - k) % 3u, facing < 0)]);
+}
