@@ -3,10 +3,10 @@
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, opaque};
-use sunbake_runtime::gpu::{Census, Gpu};
-use sunbake_runtime::technique::{BakedGpu, Technique};
-use sunbake_runtime::testing::{bake, bake_lanes, equinox, view};
+use sunbake::testing::{SceneBuilder, block, floor, opaque};
+use sunbake_runtime::gpu::{Census, Gpu, VolumeSettings};
+use sunbake_runtime::technique::{BakedGpu, Technique, Volumes};
+use sunbake_runtime::testing::{bake, bake_lanes, equinox, standing_sun, view};
 use sunbake_runtime::{Filter, Moment, Shot, Stage};
 
 fn census(stage: &Stage, draw_visibility: bool) -> Census {
@@ -120,4 +120,60 @@ fn textures_holes_colours_and_second_sides_cost_only_the_scenes_that_have_them()
     // Lit: textured, leaf, coloured. Depth: solid, leaf. Sky.
     assert_eq!((found.pipelines, found.draws, found.base_color_textures, found.vertex_buffers), (6, 3, 1, 4));
     assert_eq!((found.alpha_test_pipelines, found.two_sided_pipelines), (2, 2));
+}
+
+/// What volumes build for a plain scene seen from aside, and where its casters are counted.
+fn volume_census(scene: sunbake::scene::Scene, settings: VolumeSettings, eye: DVec3) -> (Census, [usize; 2]) {
+    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let stage = Stage::plain(scene, Some(standing_sun(DVec3::new(0.3, 1.0, 0.2), 0.0)));
+    let shot = Shot::new(&stage, view(&stage, eye, DVec3::new(0.4, 0.3, 0.2), [16, 16]));
+    let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
+    volumes.visibility(&shot, &stage.moment(0.5)).unwrap();
+    let counted = volumes.report().lights.first().map_or([0; 2], |light| [light.plan.z_pass, light.plan.z_fail]);
+    (volumes.census().unwrap(), counted)
+}
+
+#[test]
+fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own() {
+    let settings = VolumeSettings::default();
+    let aside = DVec3::new(4.0, 3.0, 5.0);
+    let floor = floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0);
+    let ground = || SceneBuilder::new().soup(&floor);
+    let (base, counted) = volume_census(ground().soup(&cube()).build(), settings, aside);
+    let expected = Census {
+        passes: 3,    // Depth, volumes, light.
+        pipelines: 4, // Depth, the sun's gate, the background, faces before the surface.
+        vertex_buffers: 2,
+        bind_groups: 1,
+        targets: 2,
+        draws: 1,
+        stencil_pipelines: 1,
+        volume_buffers: 2, // Points, corners.
+        volume_bytes: base.volume_bytes,
+        ..Census::default()
+    };
+    // The ground shades nothing, and is left out.
+    assert_eq!((base, counted), (expected, [1, 0]));
+    // An eye in the box's shadow needs faces behind the surface, and no longer those before it.
+    let in_shadow = DVec3::new(0.3, -0.5, 0.3);
+    let (found, counted) = volume_census(SceneBuilder::new().soup(&cube()).build(), settings, in_shadow);
+    assert_eq!((found.stencil_pipelines, counted), (1, [0, 1]));
+    // An open mesh beside the box asks for both.
+    let lid: Vec<_> = cube()[2..].iter().map(|t| t.map(|v| v + Vec3::new(1.5, 0.2, 0.0))).collect();
+    let (found, counted) = volume_census(ground().soup(&cube()).soup(&lid).build(), settings, aside);
+    assert_eq!((found.pipelines, found.stencil_pipelines, counted), (5, 2, [1, 1]));
+    // Two suns: the same pipelines, and a pass of volumes and one of light more.
+    let two = VolumeSettings { sun_samples: 2, ..settings };
+    let (found, _) = volume_census(ground().soup(&cube()).build(), two, aside);
+    assert_eq!((found.pipelines, found.passes), (4, 5));
+    // Nothing casts: no volumes, no pass of them, no pipeline. The sun is down: no light either.
+    let (found, _) = volume_census(ground().build(), settings, aside);
+    assert_eq!((found.passes, found.stencil_pipelines, found.pipelines), (2, 0, 3));
+    let gpu = Gpu::open().unwrap();
+    let stage = Stage::plain(ground().soup(&cube()).build(), Some(standing_sun(DVec3::new(1.0, -0.3, 0.0), 0.0)));
+    let shot = Shot::new(&stage, view(&stage, aside, DVec3::ZERO, [16, 16]));
+    let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
+    volumes.visibility(&shot, &stage.moment(0.5)).unwrap();
+    let found = volumes.census().unwrap();
+    assert_eq!((found.passes, found.pipelines, found.stencil_pipelines), (2, 2, 0));
 }
