@@ -100,6 +100,7 @@ pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -
     text.push_str(wgsl!("shade"));
     push_lamp(&mut text, page, filter);
     text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp_shade") } else { wgsl!("lamp_shade_none") });
+    text.push_str(wgsl!("surface"));
     text.push_str(wgsl!("lit_fragment"));
     text
 }

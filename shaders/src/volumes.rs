@@ -105,9 +105,11 @@ pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
     }
     match light {
         HardLight::SunGate => text.push_str(wgsl!("sun_gate_fragment")),
-        HardLight::Sun => text.push_str(wgsl!("sun_light_fragment")),
+        HardLight::Sun => text.push_str(&[wgsl!("surface"), wgsl!("sun_light_fragment")].concat()),
         HardLight::LampGate => text.push_str(wgsl!("lamp_gate_fragment")),
-        HardLight::Lamp => text.push_str(&[wgsl!("lamp_shade"), wgsl!("lamp_light_fragment")].concat()),
+        HardLight::Lamp => {
+            text.push_str(&[wgsl!("lamp_shade"), wgsl!("surface"), wgsl!("lamp_light_fragment")].concat());
+        }
     }
     text
 }

@@ -14,6 +14,7 @@ use crate::image::Raster;
 use crate::light::Moment;
 use crate::shot::Shot;
 use crate::technique::{Light, Truth};
+use crate::volumes::nearest::nearest;
 use glam::{DVec3, Vec3};
 use sunbake::trace::Hit;
 
@@ -206,32 +207,6 @@ impl Excuses<'_> {
 
     fn eye_m(&self) -> DVec3 {
         self.shot.view.eye_m.as_dvec3()
-    }
-}
-
-/// Weights of a triangle's second and third corner at the place that is nearest to a point (Ericson, *Real-Time Collision
-/// Detection*, 5.1.5).
-fn nearest(&[a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 2] {
-    let (ab, ac) = (b - a, c - a);
-    let along = |from: DVec3| (ab.dot(point - from), ac.dot(point - from));
-    let ((d1, d2), (d3, d4), (d5, d6)) = (along(a), along(b), along(c));
-    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    let share = |part: f64, rest: f64| if part + rest > 0.0 { part / (part + rest) } else { 0.0 };
-    if d1 <= 0.0 && d2 <= 0.0 {
-        [0.0, 0.0]
-    } else if d3 >= 0.0 && d4 <= d3 {
-        [1.0, 0.0]
-    } else if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        [share(d1, -d3), 0.0]
-    } else if d6 >= 0.0 && d5 <= d6 {
-        [0.0, 1.0]
-    } else if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        [0.0, share(d2, -d6)]
-    } else if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let w = share(d4 - d3, d5 - d6);
-        [1.0 - w, w]
-    } else {
-        [vb / (va + vb + vc), vc / (va + vb + vc)]
     }
 }
 

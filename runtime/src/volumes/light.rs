@@ -1,7 +1,9 @@
 //! Which way each caster's triangles face the light: decided once for each triangle, in `f64`, and shared by its edges and
 //! caps, so that no rounding can open a volume.
 
+use super::bodies::cross;
 use super::casters::{Caster, Casters};
+use super::nearest::distance_m;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -41,13 +43,13 @@ const STEP: f64 = 1.0 / (1 << 23) as f64;
 impl Light {
     /// How far a triangle turns its front to the light: above zero for fronts, zero for those seen edge on. A lamp that is
     /// nearer to a triangle's plane than its place can be told is in it.
-    fn front(&self, [a, b, c]: &[DVec3; 3]) -> f64 {
-        let normal = (*b - *a).cross(*c - *a);
+    fn front(&self, corners: &[DVec3; 3]) -> f64 {
+        let normal = cross(corners);
         match self {
             Self::Sun { towards } => normal.dot(*towards),
             Self::Lamp { position_m, .. } => {
-                let front = normal.dot(*position_m - *a);
-                if front.abs() <= normal.length() * touch_m(*position_m, *a) { 0.0 } else { front }
+                let front = normal.dot(*position_m - corners[0]);
+                if front.abs() <= normal.length() * touch_m(*position_m, corners[0]) { 0.0 } else { front }
             }
         }
     }
@@ -117,19 +119,4 @@ fn crossing(corners: &[DVec3; 3], from: DVec3, way: DVec3) -> i32 {
     let leaves = sides.iter().all(|&side| side < 0.0);
     let enters = sides.iter().all(|&side| side > 0.0);
     if ahead > 0.0 { i32::from(leaves) - i32::from(enters) } else { 0 }
-}
-
-/// Distance from a point to a triangle.
-pub fn distance_m([a, b, c]: &[DVec3; 3], from_m: DVec3) -> f64 {
-    let normal = (*b - *a).cross(*c - *a).normalize_or_zero();
-    let to_edge = |p: &DVec3, q: &DVec3| {
-        let along = *q - *p;
-        let share = ((from_m - *p).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        from_m.distance(*p + along * share)
-    };
-    let is_over = [(a, b), (b, c), (c, a)].iter().all(|(p, q)| (**q - **p).cross(from_m - **p).dot(normal) > 0.0);
-    match is_over {
-        true => (from_m - *a).dot(normal).abs(),
-        false => to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a)),
-    }
 }

@@ -26,6 +26,7 @@ pub mod bodies;
 pub mod casters;
 pub mod culling;
 pub mod light;
+pub mod nearest;
 pub mod overlap;
 pub mod plan;
 pub mod silhouettes;

@@ -2,13 +2,9 @@
 @fragment
 fn sun_light_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     cut_away(varyings);
-    let ray = view_ray(varyings.clip.xy);
-    let material = materials[varyings.material];
-    let base_color = material.base_color * vertex_color(varyings) * texture_color(varyings, ray);
-    let face = towards_eye(varyings.front_normal, varyings, ray);
-    let normal = towards_eye(normalize(varyings.shading_normal.xyz), varyings, ray);
-    if material.is_unlit > 0.5 || dot(face, frame.sun_direction) <= 0.0 {
+    let at = surface_at(varyings);
+    if at.material.is_unlit > 0.5 || dot(at.face, frame.sun_direction) <= 0.0 {
         return vec4<f32>(0.0);
     }
-    return vec4<f32>(base_color.rgb * frame.sun_light * max(dot(normal, frame.sun_direction), 0.0), 0.0);
+    return vec4<f32>(at.base_color * frame.sun_light * max(dot(at.normal, frame.sun_direction), 0.0), 0.0);
 }

@@ -41,13 +41,18 @@ fn wall_vertex(
     return corner(wall_corner(wall, index % WALL_CORNERS, times > 0));
 }
 
-@vertex
-fn cap_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
-    let triangle = index / 3u;
-    let facing = face(triangle);
+// A corner of the cap that lies at a triangle (`thrown` 0), or at what is thrown from it and looks the other way (1).
+fn cap_corner(index: u32, thrown: u32) -> vec4<f32> {
+    let facing = face(index / 3u);
     if facing == 0 {
         return NOWHERE;
     }
     let k = index % 3u;
-    return corner(triangles[3u * triangle + select(k, (3u - k) % 3u, facing < 0)]);
+    let is_turned = (facing < 0) != (thrown == 1u);
+    return corner(thrown * point_count() + triangles[index - k + select(k, (3u - k) % 3u, is_turned)]);
+}
+
+@vertex
+fn cap_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
+    return cap_corner(index, 0u);
 }

@@ -12,11 +12,5 @@ fn wall_corner(wall: Wall, k: u32, is_along: bool) -> u32 {
 
 @vertex
 fn dark_cap_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
-    let triangle = index / 3u;
-    let facing = face(triangle);
-    if facing == 0 {
-        return NOWHERE;
-    }
-    let k = index % 3u;
-    return corner(point_count() + triangles[3u * triangle + select(k, (3u - k) % 3u, facing > 0)]);
+    return cap_corner(index, 1u);
 }

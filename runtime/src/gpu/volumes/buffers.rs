@@ -1,12 +1,13 @@
 //! Casters on the GPU, and what a light makes of them.
 
 use super::super::device::{Gpu, GpuError};
-use crate::volumes::light::distance_m;
+use crate::volumes::nearest::distance_m;
 use crate::volumes::overlap;
 use crate::volumes::silhouettes::volumes;
 use crate::volumes::{
     Casters, Extrusion, Faces, FramePlan, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Part, Parts, Savings, Sharing,
 };
+use std::borrow::Cow;
 use std::ops::Range;
 use std::time::Instant;
 use sunbake_shaders::{VolumeCorners, VolumeLight};
@@ -167,14 +168,10 @@ impl Thrown {
             faces: Faces::default(),
         };
         for run in &runs {
-            let of_run: Vec<i8> = match runs.len() {
-                1 => faces.of_triangle.clone(),
-                _ => faces
-                    .of_triangle
-                    .iter()
-                    .enumerate()
-                    .map(|(i, &face)| if run.contains(&i) { face } else { 0 })
-                    .collect(),
+            let in_run = |(i, &face): (usize, &i8)| if run.contains(&i) { face } else { 0 };
+            let of_run: Cow<[i8]> = match runs.len() {
+                1 => Cow::Borrowed(&faces.of_triangle),
+                _ => faces.of_triangle.iter().enumerate().map(in_run).collect(),
             };
             let run = match &buffers.found {
                 Some(found) => made.find(gpu, casters, buffers, found, reaches.as_ref(), &of_run, extrusion)?,
