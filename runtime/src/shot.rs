@@ -24,6 +24,8 @@ impl<'a> Shot<'a> {
     /// The surface at each pixel's centre, in row order.
     pub fn hits(&self) -> &[Option<Hit>] {
         self.hits.get_or_init(|| {
+            // Built by one thread, before many ask for it.
+            self.stage.tracer();
             let eye_m = self.view.eye_m.as_dvec3();
             let width = self.view.size[0] as usize;
             (0..self.view.pixel_count())

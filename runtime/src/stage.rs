@@ -192,7 +192,8 @@ impl Stage {
         Moment::new(self.path.as_ref(), t).with_lamp(self.lamp_moment(t))
     }
 
-    /// The scene made ready for rays.
+    /// The scene made ready for rays. The first call builds it, with all threads: whoever asks from many of them has to have asked
+    /// before, since a thread that waits for others to build may take up work that asks again.
     pub fn tracer(&self) -> &Tracer {
         self.tracer.get_or_init(|| Tracer::new(&self.scene, &self.geometry))
     }

@@ -45,6 +45,8 @@ fn framed(stage: &Stage, aspect: f64) -> Camera {
     let candidates: Vec<(f64, f64)> = (0..BEARINGS)
         .flat_map(|i| ELEVATIONS_DEG.map(|(elevation, _)| (f64::from(i) * 360.0 / f64::from(BEARINGS), elevation)))
         .collect();
+    // Built by one thread, before many ask for it.
+    stage.tracer();
     let scored = candidates.par_iter().filter_map(|&(bearing_deg, elevation_deg)| {
         let camera = standing_back(&points, middle, towards(bearing_deg, elevation_deg), aspect)?;
         Some((liking(bearing_deg, elevation_deg) * seen(stage, &camera, &points) as f64, camera))
