@@ -17,6 +17,7 @@ pub mod image;
 pub mod light;
 pub mod playback;
 pub mod shade;
+pub mod shadow_maps;
 pub mod sheet;
 pub mod shot;
 pub mod sides;

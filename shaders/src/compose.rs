@@ -81,11 +81,9 @@ impl PageVariant {
 
 /// The depth pass: entry points `depth_vertex`, or for surfaces with holes `surface_vertex` and `depth_fragment`.
 pub fn depth_shader(surface: SurfaceVariant) -> String {
-    let mut text = constants();
-    text.push_str(wgsl!("frame"));
-    text.push_str(wgsl!("place"));
+    let mut text = [wgsl!("frame"), wgsl!("place")].concat();
     if surface.is_cut {
-        push_surface(&mut text, surface);
+        push_holes(&mut text, surface, &surface_vertex_wgsl(surface, None));
         text.push_str(wgsl!("depth_fragment"));
     } else {
         text.push_str(DEPTH_VERTEX_WGSL);
@@ -96,13 +94,18 @@ pub fn depth_shader(surface: SurfaceVariant) -> String {
 /// The lit pass: entry points `surface_vertex` and `lit_fragment`.
 pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = shading(surface, page, filter);
-    push_ambient(&mut text, page);
+    end_of_lit(&mut text, page, filter);
+    text
+}
+
+/// All of the lit pass after what is known of the sun.
+pub(crate) fn end_of_lit(text: &mut String, page: &PageVariant, filter: Filter) {
+    push_ambient(text, page);
     text.push_str(wgsl!("shade"));
-    push_lamp(&mut text, page, filter);
+    push_lamp(text, page, filter);
     text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp_shade") } else { wgsl!("lamp_shade_none") });
     text.push_str(wgsl!("surface"));
     text.push_str(wgsl!("lit_fragment"));
-    text
 }
 
 /// The visibility pass: entry points `surface_vertex` and `visibility_fragment`.
@@ -134,10 +137,8 @@ fn constants() -> String {
 
 /// What every program that lights a surface begins with.
 pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
-    let mut text = constants();
-    text.push_str(wgsl!("frame"));
-    text.push_str(wgsl!("place"));
-    push_surface(&mut text, surface);
+    let mut text = [wgsl!("frame"), wgsl!("place")].concat();
+    push_holes(&mut text, surface, &surface_vertex_wgsl(surface, None));
     text.push_str(wgsl!("facing"));
     if page.layer_count() + page.lamp_layer_count > 0 {
         // Writing to a string cannot fail.
@@ -192,9 +193,10 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
     text
 }
 
-/// Vertex stage, varyings, and what is known of the surface's colour and holes.
-fn push_surface(text: &mut String, surface: SurfaceVariant) {
-    text.push_str(&surface_vertex_wgsl(surface));
+/// A vertex stage with its varyings, and what is known of the surface's colour and holes.
+pub(crate) fn push_holes(text: &mut String, surface: SurfaceVariant, vertex: &str) {
+    text.push_str(&constants());
+    text.push_str(vertex);
     text.push_str(if surface.is_textured { wgsl!("texture_color") } else { wgsl!("texture_none") });
     text.push_str(if surface.has_vertex_color { wgsl!("vertex_color") } else { wgsl!("vertex_color_none") });
     if surface.is_cut {

@@ -8,6 +8,7 @@
 //! Per scene: one program per variant that occurs in it. Per frame: one [`FrameUniform`].
 
 mod compose;
+mod shadow_maps;
 mod uniforms;
 mod vertex;
 mod volumes;
@@ -16,7 +17,14 @@ pub use compose::{
     AmbientModel, Filter, LaneVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader, lit_shader,
     sky_shader, visibility_shader,
 };
-pub use uniforms::{FrameUniform, LampUniform, MaterialUniform, SkyUniform, WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
+pub use shadow_maps::{
+    ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowViews, blur_shader, mapped_lit_shader,
+    mapped_visibility_shader, shadow_depth_shader, shadow_mask_shader, shadow_probe_shader,
+};
+pub use uniforms::{
+    FrameUniform, LampUniform, MOST_SHADOW_VIEWS, MaterialUniform, ShadowMapsUniform, ShadowViewUniform, SkyUniform,
+    WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
+};
 pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};
 pub use volumes::{
     HardLight, VolumeCorners, VolumeLight, VolumeUse, background_shader, hard_light_shader, screen_shader,

@@ -95,6 +95,37 @@ pub struct SkyUniform {
     pub coefficients: [[f32; 4]; 9],
 }
 
+/// Most shadow maps of a view.
+pub const MOST_SHADOW_VIEWS: usize = 6;
+
+/// A shadow map's matrix. `ShadowView` in `shadow_view.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ShadowViewUniform {
+    /// Columns of the matrix from a point less the origin to the map's clip space; depth is 0 nearest to the sun.
+    pub clip_from_point: [[f32; 4]; 4],
+    /// The origin, bake space.
+    pub origin_m: [f32; 3],
+    /// What a metre towards the sun adds to z; negative.
+    pub z_per_metre: f32,
+    /// The eye less the origin.
+    pub eye_from_origin_m: [f32; 3],
+    /// Height of the ground, bake space.
+    pub ground_height_m: f32,
+}
+
+/// A view's shadow maps. `ShadowMaps` in `shadow_maps.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ShadowMapsUniform {
+    /// Their matrices.
+    pub views: [ShadowViewUniform; MOST_SHADOW_VIEWS],
+    /// How many there are.
+    pub count: u32,
+    #[doc(hidden)]
+    pub pad: [u32; 3],
+}
+
 /// A material. `Material` in `frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

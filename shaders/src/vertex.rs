@@ -146,8 +146,9 @@ impl Format {
     }
 }
 
-/// The vertex stage of a surface: it places the corner and hands on everything but the position.
-pub(crate) fn surface_vertex_wgsl(surface: SurfaceVariant) -> String {
+/// The vertex stage of a surface: it places the corner and hands on everything but the position, and one number more, if asked for:
+/// its name, and what it is.
+pub(crate) fn surface_vertex_wgsl(surface: SurfaceVariant, more: Option<(&str, &str)>) -> String {
     let all = attributes(surface);
     let mut vertex = String::from("struct Vertex {\n");
     let mut varyings = String::from("struct Varyings {\n    @builtin(position) @invariant clip: vec4<f32>,\n");
@@ -161,6 +162,10 @@ pub(crate) fn surface_vertex_wgsl(surface: SurfaceVariant) -> String {
             let _ = writeln!(varyings, "    @location({location}){flat} {name}: {kind},");
             let _ = writeln!(copies, "    varyings.{name} = vertex.{name};");
         }
+    }
+    if let Some((name, value)) = more {
+        let _ = writeln!(varyings, "    @location({}) {name}: f32,", all.len());
+        let _ = writeln!(copies, "    varyings.{name} = {value};");
     }
     format!(
         "{vertex}}}\n\n{varyings}}}\n\n@vertex\nfn surface_vertex(vertex: Vertex) -> Varyings {{\n    var varyings: \

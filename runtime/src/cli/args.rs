@@ -6,6 +6,7 @@ use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::sun::{Date, parse_place};
 use sunbake_runtime::light::WITHOUT_END;
+use sunbake_runtime::shadow_maps::{Bias, Variant};
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::volumes::Mode;
 use sunbake_runtime::{AmbientModel, Filter};
@@ -148,18 +149,40 @@ pub struct LookArgs {
     /// above and aside that shows most of it.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, default_value = "default", allow_hyphen_values = true)]
     pub camera: CameraChoice,
-    /// How visibility is found: baked, `volumes[:MODE]`, truth:hard, truth:soft or truth:soft:N.
+    /// How visibility is found: baked, `volumes[:MODE]`, `map[:VARIANT]`, truth:hard, truth:soft or truth:soft:N.
     ///
     /// `volumes` counts shadow volumes in the GPU's stencil: hard edges, exact at each pixel, anew for each picture, with no
     /// bake. Its modes are `volumes:zfail` (counted behind surfaces, always right), `volumes:zpass` (before them where that is
     /// right, cheaper), `volumes:triangles` (a volume a triangle) and `volumes:gpu` (silhouettes found by the vertex shader);
-    /// without one, each caster is drawn as suits it. Leaves cast their whole cards. `truth:hard` traces one ray to the sun's
+    /// without one, each caster is drawn as suits it. Leaves cast their whole cards.
+    ///
+    /// `map` draws what the sun sees into shadow maps. Its variants are `map:plain` (one map, compared texel by texel),
+    /// `map:compare` (by the sampler), `map:pcf16` (sixteen comparisons), `map:pcf4` (four of
+    /// them, dithered), `map:pcss` (as wide as the penumbra), `map:cascades` (a map for each slice of the view, what `map` is without a variant),
+    /// `map:perspective` and `map:cube` (bent so that what is near gets more of it), `map:ground` (a blurred picture of what casts,
+    /// on the ground) and `map:planar` (what casts laid flat on the ground, and nothing else).
+    ///
+    /// `truth:hard` traces one ray to the sun's
     /// centre from each pixel, `truth:soft` N rays over its disc, 64 unless given: time grows with N, noise shrinks as 1/N.
     #[arg(long, value_name = "TECHNIQUE", value_parser = parse_technique, default_value = "baked")]
     pub technique: TechniqueChoice,
     /// With `volumes`: as how many hard suns its disc shines, 1 to 4096. Time grows with N; edges have N steps.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub sun_samples: u32,
+    /// With `map`: edge of each map in texels, 16 to 16384. Bytes, and time to draw a map, grow with the square. [default: 2048]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub map_size: Option<u32>,
+    /// With `map:cascades`: the most maps, 2 to 4; each costs its bytes and its time. [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4))]
+    pub cascades: Option<u32>,
+    /// With `map`: what keeps surfaces from shading themselves: none, or parts with commas between them.
+    ///
+    /// Parts are constant:METRES or texels:N (along the light), `slope[:N]` (along the light, by the surface's slant), `normal[:N]`
+    /// (along its normal, by a texel's size) and plane (texels are compared with the surface's plane). More hides more of what
+    /// is close; the default needs no tuning. [default: texels:0.5,plane; of map:compare and map:ground texels:0.5,normal:1; of map:plain
+    /// texels:2]
+    #[arg(long, value_name = "PARTS")]
+    pub bias: Option<Bias>,
     /// Metres beyond which a set's lamp gives no light. Volumes end there, and cost less. [default: without end]
     #[arg(long, value_name = "M", value_parser = parse_range, allow_hyphen_values = true)]
     pub lamp_range: Option<f32>,
@@ -204,6 +227,8 @@ pub enum TechniqueChoice {
     Baked,
     /// By shadow volumes.
     Volumes(Mode),
+    /// By shadow maps.
+    Map(Variant),
     /// By rays.
     Truth(Truth),
 }
@@ -293,8 +318,17 @@ fn parse_range(text: &str) -> Result<f32, String> {
 fn parse_technique(text: &str) -> Result<TechniqueChoice, String> {
     let wrong = || {
         let modes = Mode::ALL.map(|mode| mode.to_string()).join(", ");
-        format!("`{text}` is not a technique: give baked, {modes}, truth:hard, truth:soft or truth:soft:N")
+        let variants = Variant::ALL.map(|variant| variant.to_string()).join(", ");
+        format!(
+            "`{text}` is not a technique: give baked, {modes}, map, {variants}, truth:hard, truth:soft or truth:soft:N"
+        )
     };
+    if text == "map" {
+        return Ok(TechniqueChoice::Map(Variant::default()));
+    }
+    if let Some(variant) = Variant::ALL.into_iter().find(|variant| variant.to_string() == text) {
+        return Ok(TechniqueChoice::Map(variant));
+    }
     if let Some(mode) = Mode::ALL.into_iter().find(|mode| mode.to_string() == text) {
         return Ok(TechniqueChoice::Volumes(mode));
     }
@@ -328,7 +362,20 @@ mod tests {
         assert_eq!(parse_technique("truth:soft:9"), Ok(TechniqueChoice::Truth(Truth::Soft { rays: 9 })));
         assert_eq!(parse_technique("volumes"), Ok(TechniqueChoice::Volumes(Mode::Planned)));
         assert_eq!(parse_technique("volumes:gpu"), Ok(TechniqueChoice::Volumes(Mode::Gpu)));
-        for bad in ["truth", "truth:", "truth:soft:", "truth:soft:0", "truth:soft:x", "volumes:", "volumes:z"] {
+        assert_eq!(parse_technique("map"), Ok(TechniqueChoice::Map(Variant::Cascades)));
+        assert_eq!(parse_technique("map:cube"), Ok(TechniqueChoice::Map(Variant::Cube)));
+        for bad in [
+            "map:",
+            "map:pcf",
+            "maps",
+            "truth",
+            "truth:",
+            "truth:soft:",
+            "truth:soft:0",
+            "truth:soft:x",
+            "volumes:",
+            "volumes:z",
+        ] {
             assert!(parse_technique(bad).is_err(), "{bad}");
         }
     }

@@ -9,8 +9,9 @@ use sunbake::scene::LoadLimits;
 use sunbake::settings::SunRequest;
 use sunbake::sun::DayRequest;
 use sunbake_runtime::gpu::{Gpu, GpuError, VolumeSettings};
+use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::stage::MAX_SCENE_BYTES;
-use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique, Volumes};
+use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Volumes};
 use sunbake_runtime::{AmbientModel, Filter, Moment, Raster, Shot, Stage, View};
 
 /// Most samples of a picture: one of 16384 by 16384.
@@ -24,23 +25,24 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
                 "truth is traced on the CPU: leave --renderer gpu out, or draw --technique baked",
             ));
         }
-        (RendererChoice::Cpu, TechniqueChoice::Volumes(_)) => {
-            return Err(Failure::usage(
-                "shadow volumes are counted by a GPU: leave --renderer cpu out, or draw --technique truth:hard, which finds the \
-                 same shadows",
-            ));
+        (RendererChoice::Cpu, technique) if live(technique).is_some() => {
+            return Err(Failure::usage(format!(
+                "{} by a GPU: leave --renderer cpu out, or draw --technique {}",
+                live(technique).unwrap_or_default(),
+                instead(technique)
+            )));
         }
         (_, TechniqueChoice::Truth(_)) | (RendererChoice::Cpu, _) => return Ok(None),
         _ => {}
     }
     match Gpu::open() {
         Ok(gpu) => Ok(Some(gpu)),
-        Err(GpuError::NoAdapter { reason }) if matches!(look.technique, TechniqueChoice::Volumes(_)) => {
-            Err(Failure::unsupported(format!(
-                "shadow volumes are counted by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's \
-                 lavapipe will do), or draw --technique truth:hard, which finds the same shadows"
-            )))
-        }
+        Err(GpuError::NoAdapter { reason }) if live(look.technique).is_some() => Err(Failure::unsupported(format!(
+            "{} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), or draw \
+             --technique {}",
+            live(look.technique).unwrap_or_default(),
+            instead(look.technique)
+        ))),
         Err(GpuError::NoAdapter { .. }) if look.renderer == RendererChoice::Auto => {
             if !quiet {
                 eprintln!("no GPU adapter found: drawing on the CPU");
@@ -48,6 +50,36 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
             Ok(None)
         }
         Err(error) => Err(error.into()),
+    }
+}
+
+/// What a GPU does for a technique that the CPU has no twin of; nothing for the others.
+fn live(technique: TechniqueChoice) -> Option<&'static str> {
+    match technique {
+        TechniqueChoice::Volumes(_) => Some("shadow volumes are counted"),
+        TechniqueChoice::Map(_) => Some("shadow maps are drawn"),
+        TechniqueChoice::Baked | TechniqueChoice::Truth(_) => None,
+    }
+}
+
+/// What to draw in its place, and why that.
+fn instead(technique: TechniqueChoice) -> &'static str {
+    match technique {
+        TechniqueChoice::Map(variant) if variant.is_soft() => "truth:soft, which they come near to",
+        TechniqueChoice::Map(_) => "truth:hard, which they come near to",
+        _ => "truth:hard, which finds the same shadows",
+    }
+}
+
+/// The shadow maps that were asked for.
+fn map_settings(look: &LookArgs, variant: Variant) -> MapSettings {
+    let settings = MapSettings::new(variant);
+    MapSettings {
+        size_texels: look.map_size.unwrap_or(settings.size_texels),
+        cascades: look.cascades.map_or(settings.cascades, |n| n as usize),
+        bias: look.bias.unwrap_or(settings.bias),
+        lamp_filter: look.filter.into(),
+        ..settings
     }
 }
 
@@ -65,7 +97,12 @@ pub fn technique<'a>(
             let settings = VolumeSettings { mode, sun_samples: look.sun_samples, ..VolumeSettings::default() };
             Box::new(Volumes::new(gpu, stage, settings)?)
         }
-        (None, TechniqueChoice::Volumes(_)) => return Err(Failure::unsupported("shadow volumes are counted by a GPU")),
+        (Some(gpu), TechniqueChoice::Map(variant)) => {
+            Box::new(ShadowMaps::new(gpu, stage, map_settings(look, variant))?)
+        }
+        (None, TechniqueChoice::Volumes(_) | TechniqueChoice::Map(_)) => {
+            return Err(Failure::unsupported(format!("{} by a GPU", live(look.technique).unwrap_or_default())));
+        }
         (_, TechniqueChoice::Truth(truth)) => Box::new(truth),
     })
 }
@@ -98,6 +135,7 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
     if look.sun_samples > 1 && !is_volumes {
         return Err(Failure::usage("--sun-samples is for --technique volumes; of truth give truth:soft:N"));
     }
+    check_map_options(look)?;
     if !from.exists() {
         return Err(Failure::io(format!("{} is not there: check its name", from.display())));
     }
@@ -109,7 +147,7 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
         }
         if is_baked {
             return Err(Failure::usage(format!(
-                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes or truth:hard",
+                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes, map or truth:hard",
                 from.display()
             )));
         }
@@ -121,7 +159,12 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
         ));
     }
     let stage = Stage::read(from)?;
-    let stage = if is_baked { stage } else { stage.without_times() };
+    let stage = match look.technique {
+        TechniqueChoice::Baked => stage,
+        // A lamp's shadows are those of the bake.
+        TechniqueChoice::Map(_) => stage.without_sun(),
+        TechniqueChoice::Volumes(_) | TechniqueChoice::Truth(_) => stage.without_times(),
+    };
     let best = stage.best_ambient();
     let is_lit = output != OutputChoice::Visibility && matches!(look.light, LightChoice::Both | LightChoice::Sky);
     let model = match look.ambient.model() {
@@ -142,6 +185,25 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
         LightChoice::Sun => stage.without_lamp(),
         _ => stage,
     })
+}
+
+/// Options of shadow maps are for shadow maps.
+fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
+    let variant = match look.technique {
+        TechniqueChoice::Map(variant) => Some(variant),
+        _ => None,
+    };
+    let has_map = variant.is_some_and(|variant| variant != Variant::Planar);
+    for (is_given, option) in [(look.map_size.is_some(), "--map-size"), (look.bias.is_some(), "--bias")] {
+        if is_given && !has_map {
+            let text = format!("{option} is for --technique map and its variants that have one: leave it out");
+            return Err(Failure::usage(text));
+        }
+    }
+    if look.cascades.is_some() && variant != Some(Variant::Cascades) {
+        return Err(Failure::usage("--cascades is for --technique map:cascades: leave it out"));
+    }
+    Ok(())
 }
 
 fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {

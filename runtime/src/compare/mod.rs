@@ -4,8 +4,10 @@
 //! every number, they may still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it
 //! lies: pixels within one pixel of such an edge are counted apart ([`edges`]).
 
+mod defects;
 mod mask;
 
+pub use defects::Defects;
 pub use mask::{FINE_PX, MaskAgreement};
 
 use crate::image::Raster;

@@ -3,6 +3,7 @@
 //! Triangles are flattened: corners are [`sunbake::scene::Geometry`]'s own, so that what is rasterised is bit for bit what
 //! is traced, whatever matrices put it there.
 
+use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -16,6 +17,10 @@ pub struct BatchKey {
     pub surface: SurfaceVariant,
     /// Whether both sides are drawn; else the one that is counter-clockwise.
     pub is_two_sided: bool,
+    /// Whether it lies on the ground, where that makes a difference.
+    pub is_ground: bool,
+    /// Whether it is not drawn, and only casts.
+    pub is_hidden: bool,
     /// The atlas page.
     pub page: u32,
     /// Image and wrap modes, if textured.
@@ -68,17 +73,22 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
     }
 }
 
-/// Sorts what is drawn into batches and lays out the streams.
-pub fn batches(stage: &Stage) -> (Vec<Batch>, Vertices) {
+/// Sorts what is drawn into batches and lays out the streams. Given the ground, it gets batches of its own, and so does what casts
+/// and is not drawn.
+pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
     let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
     for instance in 0..stage.scene.instances.len() {
-        let Some(key) = key(stage, instance) else { continue };
+        let key = key(stage, instance);
         for triangle in stage.geometry.first_triangle[instance]..stage.geometry.first_triangle[instance + 1] {
-            let sides = stage.sides(triangle as usize);
-            if !sides.is_none() {
-                let key = BatchKey { is_two_sided: sides.front && sides.back, ..key };
-                triangles.entry(key).or_default().push(triangle as usize);
+            let triangle = triangle as usize;
+            let sides = stage.sides(triangle);
+            let is_hidden = sides.is_none();
+            if is_hidden && !(ground.is_some() && stage.geometry.is_solid(&stage.scene, triangle)) {
+                continue;
             }
+            let is_ground = ground.is_some_and(|ground| ground.holds(triangle));
+            let key = BatchKey { is_two_sided: sides.front && sides.back, is_ground, is_hidden, ..key };
+            triangles.entry(key).or_default().push(triangle);
         }
     }
     let mut vertices = Vertices::default();
@@ -96,19 +106,21 @@ pub fn batches(stage: &Stage) -> (Vec<Batch>, Vertices) {
     (batches.collect(), vertices)
 }
 
-fn key(stage: &Stage, instance: usize) -> Option<BatchKey> {
+fn key(stage: &Stage, instance: usize) -> BatchKey {
     let material = stage.scene.material(instance);
     let texture = material.base_color_texture.map(|t| TextureKey { image: t.image, wrap: t.wrap.map(wrap_code) });
-    Some(BatchKey {
+    BatchKey {
         surface: SurfaceVariant {
             is_textured: texture.is_some(),
             has_vertex_color: stage.mesh(instance).colors.is_some(),
             is_cut: matches!(material.alpha, Alpha::Cut { .. }),
         },
         is_two_sided: false,
-        page: stage.chart(instance)?.page,
+        is_ground: false,
+        is_hidden: false,
+        page: stage.chart(instance).map_or(0, |chart| chart.page),
         texture,
-    })
+    }
 }
 
 fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut Vertices) {

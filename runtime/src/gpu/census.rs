@@ -40,6 +40,14 @@ pub struct Census {
     pub volume_buffers: usize,
     /// Bytes of these.
     pub volume_bytes: u64,
+    /// Pipelines that draw shadow maps or pictures of what casts.
+    pub shadow_pipelines: usize,
+    /// Shadow maps, each face or cascade counted.
+    pub shadow_maps: usize,
+    /// Pictures of what casts, and those that blur them.
+    pub shadow_masks: usize,
+    /// Bytes of both.
+    pub shadow_bytes: u64,
 }
 
 impl Census {

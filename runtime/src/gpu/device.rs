@@ -15,11 +15,13 @@ pub struct Gpu {
 }
 
 /// What is used where the adapter has it.
-const WANTED: [wgpu::Features; 3] = [
+const WANTED: [wgpu::Features; 4] = [
     // Shadow volumes are counted beside depths in floating point.
     wgpu::Features::DEPTH32FLOAT_STENCIL8,
     // Lights are added up in pictures of 32 bits.
     wgpu::Features::FLOAT32_BLENDABLE,
+    // Casters above a shadow map are drawn at its top, and volumes reach to infinity.
+    wgpu::Features::DEPTH_CLIP_CONTROL,
     // Passes are timed.
     wgpu::Features::TIMESTAMP_QUERY,
 ];
@@ -52,6 +54,12 @@ pub enum GpuError {
         needed: u64,
         /// The adapter's.
         limit: u64,
+    },
+    /// Shadow maps do not fit.
+    #[error("shadow maps of {mebibytes} MiB do not fit this GPU: give a smaller --map-size, or fewer --cascades")]
+    MapMemory {
+        /// What they would take.
+        mebibytes: u64,
     },
     /// It lacks what a technique is made of.
     #[error("this GPU cannot {what} ({feature}): draw another --technique")]
@@ -114,6 +122,11 @@ impl Gpu {
         name: &'static str,
     ) -> Result<(), GpuError> {
         if self.device.features().contains(feature) { Ok(()) } else { Err(GpuError::Lacks { what, feature: name }) }
+    }
+
+    /// Whether depths outside of the range can be clamped to it.
+    pub(super) fn clamps_depth(&self) -> bool {
+        self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
     }
 
     /// Runs `work` and turns what the device complains of into an error.

@@ -28,10 +28,23 @@ pub struct Source<'a> {
 pub struct State {
     /// The picture drawn into, if any.
     pub target: Option<wgpu::ColorTargetState>,
-    /// Depth and stencil.
-    pub depth_stencil: wgpu::DepthStencilState,
+    /// Depth and stencil, if any.
+    pub depth_stencil: Option<wgpu::DepthStencilState>,
     /// Whether both sides are drawn; else the one that is counter-clockwise.
     pub is_two_sided: bool,
+    /// Whether depths are clamped to the range of the picture's, where others would not be drawn.
+    pub clamps_depth: bool,
+}
+
+impl State {
+    /// Depth and stencil as told, without clamping.
+    pub fn new(
+        target: Option<wgpu::ColorTargetState>,
+        depth_stencil: wgpu::DepthStencilState,
+        is_two_sided: bool,
+    ) -> Self {
+        Self { target, depth_stencil: Some(depth_stencil), is_two_sided, clamps_depth: false }
+    }
 }
 
 impl Program {
@@ -72,9 +85,10 @@ impl Program {
             },
             primitive: wgpu::PrimitiveState {
                 cull_mode: (!state.is_two_sided).then_some(wgpu::Face::Back),
+                unclipped_depth: state.clamps_depth,
                 ..Default::default()
             },
-            depth_stencil: Some(state.depth_stencil),
+            depth_stencil: state.depth_stencil,
             multisample: Default::default(),
             fragment: source.fragment.map(|entry| wgpu::FragmentState {
                 module: &module,
@@ -108,7 +122,7 @@ impl Program {
             attributes: &attributes,
         };
         let depth_stencil = depth_state(format, true, wgpu::CompareFunction::Greater);
-        let state = State { target: None, depth_stencil, is_two_sided: key.is_two_sided };
+        let state = State::new(None, depth_stencil, key.is_two_sided);
         Self::new(gpu, &source, &[Some(frame), None, texture.filter(|_| is_cut)], state)
     }
 }

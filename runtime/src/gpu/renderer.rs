@@ -30,6 +30,11 @@ impl Output {
         if self == Self::Lit { LIT_FORMAT } else { VISIBILITY_FORMAT }
     }
 
+    /// What is there before surfaces are. Pixels that show none read 1 in visibility pictures; in lit ones they show the sky.
+    pub fn background(self) -> wgpu::Color {
+        if self == Self::Lit { wgpu::Color::BLACK } else { wgpu::Color::WHITE }
+    }
+
     /// Numbers a pixel.
     pub fn channels(self) -> u32 {
         if self == Self::Lit { 4 } else { 1 }
@@ -111,11 +116,7 @@ impl<'g> Renderer<'g> {
     }
 
     fn program(&self, key: &ProgramKey) -> Program {
-        let state = |output: Output, is_two_sided| State {
-            target: Some(output.format().into()),
-            depth_stencil: depth_state(DEPTH_FORMAT, false, wgpu::CompareFunction::Equal),
-            is_two_sided,
-        };
+        let state = surface_state;
         match key {
             ProgramKey::Depth(key) => self.scene.depth_program(self.gpu, key, DEPTH_FORMAT),
             ProgramKey::Sky => sky_program(self.gpu, &self.scene, state(Output::Lit, true)),
@@ -141,7 +142,7 @@ impl<'g> Renderer<'g> {
     fn depth_pass(&self, encoder: &mut wgpu::CommandEncoder, output: Output) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("depth"),
-            depth_stencil_attachment: Some(self.depth_attachment(output, wgpu::LoadOp::Clear(0.0))),
+            depth_stencil_attachment: Some(self.targets[&output].depth_attachment(wgpu::LoadOp::Clear(0.0))),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
@@ -151,17 +152,11 @@ impl<'g> Renderer<'g> {
     }
 
     fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, output: Output) {
-        // Pixels that show no surface read 1 in visibility pictures; in lit ones they show the sky.
-        let background = if output == Output::Lit { wgpu::Color::BLACK } else { wgpu::Color::WHITE };
+        let background = output.background();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surfaces"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets[&output].view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(background), store: wgpu::StoreOp::Store },
-            })],
-            depth_stencil_attachment: Some(self.depth_attachment(output, wgpu::LoadOp::Load)),
+            color_attachments: &[Some(self.targets[&output].picture_attachment(wgpu::LoadOp::Clear(background)))],
+            depth_stencil_attachment: Some(self.targets[&output].depth_attachment(wgpu::LoadOp::Load)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
@@ -172,14 +167,6 @@ impl<'g> Renderer<'g> {
         if let Some(sky) = self.programs.get(&ProgramKey::Sky).filter(|_| output == Output::Lit) {
             pass.set_pipeline(&sky.pipeline);
             pass.draw(0..3, 0..1);
-        }
-    }
-
-    fn depth_attachment(&self, output: Output, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-        wgpu::RenderPassDepthStencilAttachment {
-            view: &self.targets[&output].depth,
-            depth_ops: Some(wgpu::Operations { load, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
         }
     }
 
@@ -200,6 +187,12 @@ impl<'g> Renderer<'g> {
             ..Census::of_scene(&self.scene)
         }
     }
+}
+
+/// How surfaces whose depths are known meet an output's picture.
+pub(super) fn surface_state(output: Output, is_two_sided: bool) -> State {
+    let depth = depth_state(DEPTH_FORMAT, false, wgpu::CompareFunction::Equal);
+    State::new(Some(output.format().into()), depth, is_two_sided)
 }
 
 /// What shades surfaces.

@@ -7,6 +7,7 @@ use super::maps::PageTextures;
 use super::program::Program;
 use super::textures::BaseTextures;
 use crate::playback::page_variant;
+use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 use sunbake_shaders::{PageVariant, Stream};
@@ -15,6 +16,8 @@ use sunbake_shaders::{PageVariant, Stream};
 pub struct SceneOnGpu {
     /// Draws.
     pub batches: Vec<Batch>,
+    /// What casts and is not drawn, where that was asked for.
+    pub hidden: Vec<Batch>,
     /// Vertex buffers.
     pub streams: BTreeMap<Stream, wgpu::Buffer>,
     /// Maps.
@@ -28,14 +31,21 @@ pub struct SceneOnGpu {
 impl SceneOnGpu {
     /// Uploads a stage.
     pub fn new(gpu: &Gpu, stage: &Stage) -> Result<Self, GpuError> {
-        let (batches, vertices) = batches(stage);
+        Self::with_ground(gpu, stage, None)
+    }
+
+    /// Uploads a stage, its ground as batches of their own, and what casts and is not drawn.
+    pub fn with_ground(gpu: &Gpu, stage: &Stage, ground: Option<&Ground>) -> Result<Self, GpuError> {
+        let (batches, vertices) = batches(stage, ground);
         let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
         let page = |maps| PageTextures::new(gpu, maps, stage.bits, page_variant(maps, stage.bits, radius_rad));
         let pages = stage.pages.iter().map(page).collect::<Result<_, _>>()?;
         let keys = batches.iter().filter_map(|batch| batch.key.texture).collect();
+        let (hidden, batches) = batches.into_iter().partition(|batch| batch.key.is_hidden);
         Ok(Self {
             streams: upload_streams(gpu, &vertices)?,
             batches,
+            hidden,
             pages,
             textures: BaseTextures::new(gpu, stage, &keys)?,
             frame: FrameBindings::new(gpu, stage),
@@ -102,5 +112,5 @@ impl SceneOnGpu {
 /// The key of a batch's depth program, which knows of pages and textures only what holes need.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
     let surface = if key.surface.is_cut { key.surface } else { Default::default() };
-    BatchKey { surface, page: 0, texture: None, ..*key }
+    BatchKey { surface, page: 0, texture: None, is_ground: false, is_hidden: false, ..*key }
 }

@@ -13,6 +13,8 @@ pub enum Phase {
     Depth,
     /// Shadow volumes.
     Volumes,
+    /// Shadow maps, and pictures of what casts.
+    Maps,
     /// Light.
     Light,
 }
@@ -24,6 +26,8 @@ pub struct FrameTimes {
     pub depth: f64,
     /// Shadow volumes.
     pub volumes: f64,
+    /// Shadow maps, and pictures of what casts.
+    pub maps: f64,
     /// Light.
     pub light: f64,
     /// From the start of the first pass to the end of the last.
@@ -107,6 +111,7 @@ impl Stopwatch {
             *match phase {
                 Phase::Depth => &mut times.depth,
                 Phase::Volumes => &mut times.volumes,
+                Phase::Maps => &mut times.maps,
                 Phase::Light => &mut times.light,
             } += took;
         }

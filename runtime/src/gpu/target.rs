@@ -56,4 +56,29 @@ impl Target {
             Self { size, view: view(&picture), depth: view(&depth), picture, depths: depth }
         })
     }
+
+    /// The picture, to be drawn into.
+    pub fn picture_attachment(&self, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+        drawn_into(&self.view, load)
+    }
+
+    /// Its depths alone, to be drawn into.
+    pub fn depth_attachment(&self, load: wgpu::LoadOp<f32>) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+        depths_drawn_into(&self.depth, load)
+    }
+}
+
+/// A picture to be drawn into.
+pub fn drawn_into(view: &wgpu::TextureView, load: wgpu::LoadOp<wgpu::Color>) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
+}
+
+/// Depths to be drawn into.
+pub fn depths_drawn_into(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<f32>,
+) -> wgpu::RenderPassDepthStencilAttachment<'_> {
+    let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+    wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
 }

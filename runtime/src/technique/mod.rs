@@ -5,11 +5,13 @@
 
 mod baked_cpu;
 mod baked_gpu;
+mod shadow_maps;
 mod truth;
 mod volumes;
 
 pub use baked_cpu::BakedCpu;
 pub use baked_gpu::BakedGpu;
+pub use shadow_maps::ShadowMaps;
 pub use truth::{Light, Truth};
 pub use volumes::Volumes;
 

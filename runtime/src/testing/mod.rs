@@ -1,5 +1,6 @@
 //! Sets baked by code from scenes made by code, for tests of this crate and of those above it. Not part of the tool.
 
+pub mod maps;
 pub mod masks;
 
 use crate::camera::{Camera, View};

@@ -3,7 +3,7 @@
 fn lit_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     cut_away(varyings);
     let at = surface_at(varyings);
-    let visibility = sun_visibility(varyings.page_uv, at.face);
+    let visibility = sun_visibility(varyings, at.face);
     let ambient = ambient_light(varyings.page_uv, at.normal, side_of_page(varyings, at.ray));
     let light = shade(at.material, at.base_color, at.normal, visibility, ambient);
     let way_m = way_to_lamp(varyings, at.ray);

@@ -3,6 +3,7 @@
 use super::super::renderer::Output;
 use super::super::scene::depth_key;
 use super::super::stopwatch::Phase;
+use super::super::target::drawn_into;
 use super::buffers::{Draw, Draws, Run};
 use super::programs::{KEPT, ProgramKey, hard_key, volume_key};
 use super::{Shining, VolumeRenderer};
@@ -43,12 +44,10 @@ impl VolumeRenderer<'_> {
         self.report.passes += 1;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("all around"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets[&Output::Lit].view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[Some(drawn_into(
+                &self.targets[&Output::Lit].view,
+                wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            ))],
             depth_stencil_attachment: Some(untouched(&self.targets[&Output::Lit].depth)),
             timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Light)),
             ..Default::default()
@@ -129,12 +128,7 @@ impl VolumeRenderer<'_> {
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("light"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets[&output].view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[Some(drawn_into(&self.targets[&output].view, load))],
             depth_stencil_attachment: Some(match shining {
                 // Nothing was counted for this light: what an earlier one left is in the way.
                 Some((_, false)) => cleared(&self.targets[&output].depth),
@@ -171,12 +165,10 @@ impl VolumeRenderer<'_> {
         let Some(thrown) = &self.thrown[slot] else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("faces"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets[&output].view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[Some(drawn_into(
+                &self.targets[&output].view,
+                wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+            ))],
             depth_stencil_attachment: Some(untouched(&self.targets[&output].depth)),
             ..Default::default()
         });

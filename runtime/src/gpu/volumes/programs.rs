@@ -127,10 +127,9 @@ impl VolumeRenderer<'_> {
 
     fn program(&self, key: &ProgramKey) -> Program {
         let gpu = self.gpu;
-        let state = |output: Output, is_two_sided| State {
-            target: Some(output.format().into()),
-            depth_stencil: depth_state(STENCIL_FORMAT, false, wgpu::CompareFunction::Equal),
-            is_two_sided,
+        let state = |output: Output, is_two_sided| {
+            let depth = depth_state(STENCIL_FORMAT, false, wgpu::CompareFunction::Equal);
+            State::new(Some(output.format().into()), depth, is_two_sided)
         };
         match key {
             ProgramKey::Depth(key) => self.scene.depth_program(gpu, key, STENCIL_FORMAT),
@@ -159,7 +158,9 @@ impl VolumeRenderer<'_> {
                 if let Some(target) = &mut state.target {
                     target.blend = added.blend();
                 }
-                state.depth_stencil.stencil = where_none_was_counted();
+                if let Some(depth) = &mut state.depth_stencil {
+                    depth.stencil = where_none_was_counted();
+                }
                 let [frame, _, texture] = self.scene.groups(key);
                 Program::new(gpu, &source, &[frame, None, texture], state)
             }
@@ -173,7 +174,7 @@ impl VolumeRenderer<'_> {
         let source = Source { text: &text, vertex: "screen_vertex", fragment: None, attributes: &[] };
         let mut depth_stencil = depth_state(STENCIL_FORMAT, false, wgpu::CompareFunction::Always);
         depth_stencil.stencil = keeping();
-        Program::new(self.gpu, &source, &[], State { target: None, depth_stencil, is_two_sided: true })
+        Program::new(self.gpu, &source, &[], State::new(None, depth_stencil, true))
     }
 
     fn volume_program(&self, key: &VolumeKey) -> Program {
@@ -204,7 +205,10 @@ impl VolumeRenderer<'_> {
         });
         let layout = self.buffers.layout(self.gpu, key.light);
         let groups = [Some(&self.scene.frame.layout), Some(&layout)];
-        Program::new(self.gpu, &source, &groups, State { target, depth_stencil, is_two_sided: true })
+        // Faces end at infinity, where depth is 0, and are moved from the eye: GPUs that clip depths for each pixel would leave out
+        // what that takes below 0.
+        let state = State { clamps_depth: self.gpu.clamps_depth(), ..State::new(target, depth_stencil, true) };
+        Program::new(self.gpu, &source, &groups, state)
     }
 }
 

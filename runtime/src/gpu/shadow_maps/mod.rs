@@ -1,0 +1,323 @@
+//! Frames of a stage that shadow maps light.
+//!
+//! Built once per stage: the scene, and pipelines per variant that occurs. Per sun, or for maps that follow the view per frame:
+//! a pass for each map. Per frame: depths, then one pass that lights, reading the maps. `map:ground` adds a picture of what casts,
+//! drawn beside its map and blurred in two passes; `map:planar` has no map, and lays what casts flat as the camera sees it.
+//!
+//! Nothing is built for what is not called for: no map where nothing can be in shadow, no mask without a ground, no pipeline for
+//! holes without holes.
+
+mod passes;
+mod probe;
+mod programs;
+mod targets;
+
+use super::batch::BatchKey;
+use super::census::Census;
+use super::device::{Gpu, GpuError};
+use super::program::Program;
+use super::readback;
+use super::renderer::Output;
+use super::scene::{SceneOnGpu, depth_key};
+use super::stopwatch::{FrameTimes, Stopwatch};
+use super::target::{DEPTH_FORMAT, Target};
+use crate::View;
+use crate::light::Moment;
+use crate::shadow_maps::{Extents, MapProjection, MapSettings, ShadowScene, Variant};
+use crate::stage::Stage;
+use glam::Vec3;
+use programs::{ProgramKey, caster_key};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Instant;
+use sunbake_shaders::ShadowTap;
+use targets::{Bindings, Depths, Mask, Reads};
+
+/// What a frame was made of.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct MapReport {
+    /// Passes.
+    pub passes: usize,
+    /// Maps that were read.
+    pub maps: usize,
+    /// Of these, how many were drawn for this frame; the others were kept.
+    pub drawn: usize,
+    /// Longer edges of the texels in the middles of the maps, metres.
+    pub texels_m: Vec<f64>,
+    /// Why there is none, if there is none.
+    pub without: Option<&'static str>,
+    /// Seconds on the CPU to fit the maps.
+    pub fit_seconds: f64,
+    /// Seconds that passes took, if they were timed.
+    pub times: Option<FrameTimes>,
+}
+
+/// A stage on the GPU, with its maps.
+pub struct MapRenderer<'g> {
+    gpu: &'g Gpu,
+    settings: MapSettings,
+    shadow_scene: ShadowScene,
+    scene: SceneOnGpu,
+    reads: Reads,
+    halfway: Option<f32>,
+    bindings: Bindings,
+    depths: Option<Depths>,
+    mask: Option<[Mask; 2]>,
+    flat: Option<Mask>,
+    read_group: Option<wgpu::BindGroup>,
+    /// The last sun's extents.
+    extents: Option<Extents>,
+    /// What the maps hold that are there.
+    drawn: Vec<MapProjection>,
+    programs: BTreeMap<ProgramKey, Program>,
+    targets: BTreeMap<Output, Target>,
+    stopwatch: Option<Stopwatch>,
+    report: MapReport,
+}
+
+/// The sun at a moment.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SunNow {
+    /// It gives no light.
+    Down,
+    /// Nothing can be in shadow.
+    Open,
+    /// Some things may be.
+    Shaded(Vec<MapProjection>),
+}
+
+impl<'g> MapRenderer<'g> {
+    /// Uploads a stage.
+    pub fn new(gpu: &'g Gpu, stage: &Stage, settings: MapSettings) -> Result<Self, GpuError> {
+        let shadow_scene = ShadowScene::new(stage);
+        let gathers = settings.gathers();
+        let compares = !gathers && !matches!(settings.variant, Variant::Plain | Variant::Planar);
+        let halfway = compares.then(|| probe::halfway(gpu)).transpose()?;
+        let filters = |halfway: f32| settings.means.filtering && halfway > 0.0 && halfway < 1.0;
+        let has_ground = shadow_scene.ground.height_m.is_some();
+        let reads = Reads {
+            has_depths: settings.variant != Variant::Planar,
+            tap: match halfway.map(filters) {
+                Some(true) => ShadowTap::Filtered,
+                Some(false) => ShadowTap::Nearest,
+                None if gathers => ShadowTap::Gathered,
+                None => ShadowTap::Manual,
+            },
+            has_mask: settings.variant == Variant::Ground && has_ground,
+            has_flat_mask: settings.variant == Variant::Planar,
+        };
+        let scene =
+            gpu.checked("uploading the scene", || SceneOnGpu::with_ground(gpu, stage, Some(&shadow_scene.ground)))??;
+        Ok(Self {
+            bindings: gpu.checked("preparing shadow maps", || Bindings::new(gpu, &reads))?,
+            gpu,
+            settings,
+            shadow_scene,
+            scene,
+            reads,
+            halfway,
+            depths: None,
+            mask: None,
+            flat: None,
+            read_group: None,
+            extents: None,
+            drawn: Vec::new(),
+            programs: BTreeMap::new(),
+            targets: BTreeMap::new(),
+            stopwatch: settings.is_timed.then(|| Stopwatch::new(gpu)).flatten(),
+            report: MapReport::default(),
+        })
+    }
+
+    /// The picture at a moment, in linear light.
+    pub fn lit(&mut self, view: &View, moment: &Moment) -> Result<Vec<Vec3>, GpuError> {
+        Ok(readback::colors(&self.draw(view, moment, Output::Lit)?))
+    }
+
+    /// How much of the sun each pixel's surface sees at a moment.
+    pub fn visibility(&mut self, view: &View, moment: &Moment) -> Result<Vec<f32>, GpuError> {
+        self.draw(view, moment, Output::Visibility)
+    }
+
+    /// How much of the lamp each pixel's surface sees at a moment, as it was baked; nothing where it was not.
+    pub fn lamp_visibility(&mut self, view: &View, moment: &Moment) -> Result<Vec<f32>, GpuError> {
+        self.draw(view, moment, Output::LampVisibility)
+    }
+
+    /// How far along the camera's axis the surfaces of the last picture of visibility lie, in metres; without end where there
+    /// is none.
+    pub fn depths_m(&self, view: &View) -> Result<Vec<f32>, GpuError> {
+        let Some(target) = self.targets.get(&Output::Visibility) else { return Ok(Vec::new()) };
+        let stored = self.gpu.checked("reading depths", || readback::read_depths(self.gpu, target))??;
+        Ok(stored.iter().map(|depth| view.near_m() / depth).collect())
+    }
+
+    /// What the last frame was made of.
+    pub fn report(&self) -> &MapReport {
+        &self.report
+    }
+
+    /// What its ground is.
+    pub fn ground_height_m(&self) -> Option<f64> {
+        self.shadow_scene.ground.height_m
+    }
+
+    /// Whether the comparison sampler filters, if there is one.
+    pub fn filters(&self) -> Option<bool> {
+        self.halfway.map(|_| self.reads.tap == ShadowTap::Filtered)
+    }
+
+    /// What the comparison sampler reads halfway between light and shade, if there is one.
+    pub fn halfway(&self) -> Option<f32> {
+        self.halfway
+    }
+
+    /// Maps that the last frame read.
+    pub fn maps(&self) -> &[MapProjection] {
+        &self.drawn
+    }
+
+    /// Forgets the maps that are there.
+    pub fn forget(&mut self) {
+        self.drawn.clear();
+        self.extents = None;
+    }
+
+    /// Whether casters above a map are drawn at its top.
+    fn clamps_depth(&self) -> bool {
+        self.settings.means.depth_clamp && self.gpu.clamps_depth()
+    }
+
+    /// What the sun does at a moment, and the maps that a view then needs.
+    fn sun_now(&mut self, view: &View, moment: &Moment, output: Output) -> SunNow {
+        let towards = moment.sun_direction.as_dvec3();
+        let is_disc = self.settings.variant == Variant::Pcss;
+        let least = if is_disc { -f64::from(moment.sun_radius_rad) } else { 0.0 };
+        let is_dark = output == Output::Lit && moment.daylight.sun_light == Vec3::ZERO;
+        if output == Output::LampVisibility || is_dark || moment.sun_direction == Vec3::ZERO || towards.y <= least {
+            return SunNow::Down;
+        }
+        if self.extents.is_none_or(|extents| extents.axes.towards != towards.normalize()) {
+            self.extents = Some(self.shadow_scene.extents(towards));
+        }
+        let extents = self.extents.unwrap_or_else(|| self.shadow_scene.extents(towards));
+        if self.settings.variant == Variant::Planar {
+            let has_both = self.shadow_scene.ground.height_m.is_some() && !extents.casters.is_empty();
+            return if has_both { SunNow::Shaded(Vec::new()) } else { SunNow::Open };
+        }
+        let maps = {
+            let radius_rad = f64::from(moment.sun_radius_rad);
+            self.settings.maps(&self.shadow_scene, &extents, view, radius_rad, self.clamps_depth())
+        };
+        if maps.is_empty() { SunNow::Open } else { SunNow::Shaded(maps) }
+    }
+
+    fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
+        let gpu = self.gpu;
+        self.report = MapReport::default();
+        let started = Instant::now();
+        let now = self.sun_now(view, moment, output);
+        self.report.fit_seconds = started.elapsed().as_secs_f64();
+        self.report.without = match &now {
+            SunNow::Down => Some("the sun is down, or not asked for"),
+            SunNow::Open => Some("nothing in view can be in shadow"),
+            SunNow::Shaded(_) => None,
+        };
+        gpu.checked("building pipelines", || self.prepare(view.size, output, &now))??;
+        gpu.checked("drawing", || {
+            self.scene.frame.write(gpu, view, moment);
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            if let Some(stopwatch) = &mut self.stopwatch {
+                stopwatch.start();
+            }
+            if let SunNow::Shaded(maps) = &now {
+                let height_m = self.shadow_scene.ground.casts_from_m as f32;
+                self.bindings.write(gpu, maps, view.eye_m, height_m);
+                self.shadow_passes(&mut encoder, maps);
+            }
+            self.depth_pass(&mut encoder, output);
+            self.surface_pass(&mut encoder, output, &now);
+            let floats = readback::read(gpu, &self.targets[&output], output.channels(), encoder)?;
+            self.report.times = self.stopwatch.as_ref().map(|stopwatch| stopwatch.read(gpu)).transpose()?;
+            Ok(floats)
+        })
+        .flatten()
+        // Maps of a frame that failed may not have been drawn.
+        .inspect_err(|_| self.forget())
+    }
+
+    /// Makes whatever a frame needs and is not there yet.
+    fn prepare(&mut self, size: [u32; 2], output: Output, now: &SunNow) -> Result<(), GpuError> {
+        if self.targets.get(&output).is_none_or(|target| target.size != size) {
+            self.targets.insert(output, Target::new(self.gpu, size, output.format(), DEPTH_FORMAT)?);
+        }
+        let mut missing: Vec<ProgramKey> = Vec::new();
+        for batch in &self.scene.batches {
+            missing.push(ProgramKey::Depth(depth_key(&batch.key)));
+            missing.push(self.surface_program_key(output, now, &batch.key));
+        }
+        missing.extend((output == Output::Lit).then_some(ProgramKey::Sky));
+        if let SunNow::Shaded(maps) = now {
+            self.prepare_shadows(size, maps.len(), &mut missing)?;
+        }
+        for key in missing {
+            if !self.programs.contains_key(&key) {
+                let program = self.program(&key);
+                self.programs.insert(key, program);
+            }
+        }
+        Ok(())
+    }
+
+    fn prepare_shadows(&mut self, size: [u32; 2], count: usize, missing: &mut Vec<ProgramKey>) -> Result<(), GpuError> {
+        let (gpu, size_texels) = (self.gpu, self.settings.size_texels);
+        let casters: Vec<BatchKey> = self.casters().map(|batch| caster_key(&batch.key)).collect();
+        let on_ground: Vec<BatchKey> = self.casters_on_ground().map(|batch| caster_key(&batch.key)).collect();
+        if self.reads.has_depths {
+            missing.extend(casters.into_iter().map(ProgramKey::Map));
+            if self.depths.as_ref().is_none_or(|depths| depths.layers.len() < count) {
+                let mebibytes = (4 * u64::from(size_texels).pow(2) * count as u64) >> 20;
+                let made = gpu.checked("making shadow maps", || Depths::new(gpu, size_texels, count as u32));
+                self.depths = Some(made.map_err(|_| GpuError::MapMemory { mebibytes })??);
+                (self.read_group, self.drawn) = (None, Vec::new());
+            }
+        }
+        if self.reads.has_mask {
+            missing.extend(on_ground.iter().copied().map(ProgramKey::Mask));
+            missing.extend([false, true].map(|is_down| ProgramKey::Blur { is_down }));
+            if self.mask.is_none() {
+                self.mask = Some([(); 2].map(|()| Mask::new(gpu, [size_texels; 2])));
+            }
+        }
+        if self.reads.has_flat_mask {
+            missing.extend(on_ground.into_iter().map(ProgramKey::Mask));
+            if self.flat.as_ref().is_none_or(|flat| flat.size != size) {
+                (self.flat, self.read_group) = (Some(Mask::new(gpu, size)), None);
+            }
+        }
+        if self.read_group.is_none() {
+            let mask = self.mask.as_ref().map(|[mask, _]| mask);
+            self.read_group = Some(self.bindings.read(gpu, self.depths.as_ref(), mask, self.flat.as_ref()));
+        }
+        Ok(())
+    }
+
+    /// What has been built so far, and the passes of the last frame.
+    pub fn census(&self) -> Census {
+        let surfaces = || self.programs.keys().filter_map(ProgramKey::batch);
+        let masks = || self.mask.iter().flatten().chain(&self.flat);
+        let mask_bytes: u64 = masks().map(Mask::bytes).sum();
+        Census {
+            passes: self.report.passes,
+            pipelines: self.programs.len(),
+            alpha_test_pipelines: surfaces().filter(|key| key.surface.is_cut).count(),
+            two_sided_pipelines: surfaces().filter(|key| key.is_two_sided).count(),
+            targets: 2 * self.targets.len(),
+            shadow_pipelines: self.programs.keys().filter(|key| key.is_shadow()).count(),
+            shadow_maps: self.depths.as_ref().map_or(0, |depths| depths.layers.len()),
+            shadow_masks: masks().count(),
+            shadow_bytes: self.depths.as_ref().map_or(0, Depths::bytes) + mask_bytes,
+            ..Census::of_scene(&self.scene)
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The ground: the lowest of the large level planes of a scene that are seen from above, and the triangles that lie in it.
+//!
+//! Two variants know of it. A ground with nothing below it also shades nothing: any ray that it stops would have to arrive
+//! from below. Such a ground is left out of every map.
+
+use crate::stage::Stage;
+use std::collections::BTreeMap;
+
+/// Cosine between a level plane's normal and the vertical.
+const LEVEL: f64 = 0.999_9;
+/// Share of the largest level plane's area from which on a lower one is the ground.
+const AS_LARGE: f64 = 0.25;
+/// How far from a plane points may lie that are said to lie in it, as a share of the scene's size: what rounding moves them.
+const FLAT: f64 = 1e-6;
+
+/// The ground of a stage.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ground {
+    /// Height of the plane, bake space; none where no drawn triangle is level.
+    pub height_m: Option<f64>,
+    /// For each triangle, whether it lies in the plane and is drawn from above; none where there is no plane.
+    holds: Vec<bool>,
+    /// Height from which on things cast on it: what lies in it, turned over as well, does not.
+    pub casts_from_m: f64,
+    /// Whether the ground can shade something: there is something below it.
+    pub casts: bool,
+}
+
+impl Ground {
+    /// The ground of a stage.
+    pub fn new(stage: &Stage) -> Self {
+        let triangles = &stage.geometry.triangles;
+        let flat_m = FLAT * stage.scene.half_extent_m.max_element().max(1e-30);
+        let is_level = |i: usize| {
+            let (up, sides) = (stage.geometry.normal(i).y, stage.sides(i));
+            (up > LEVEL && sides.front) || (up < -LEVEL && sides.back)
+        };
+        let height_of = |i: usize| triangles[i].iter().map(|p| f64::from(p.y)).sum::<f64>() / 3.0;
+        // By heights as fine as rounding: planes that are the same to within it may part, and the larger part wins.
+        let mut areas: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
+        for i in (0..triangles.len()).filter(|&i| is_level(i)) {
+            let [a, b, c] = triangles[i].map(|p| p.as_dvec3());
+            let area = areas.entry((height_of(i) / (4.0 * flat_m)).round() as i64).or_default();
+            *area = (area.0 + (b - a).cross(c - a).length(), height_of(i));
+        }
+        // Of those that are about as large as the largest the lowest: a roof is no ground.
+        let largest = areas.values().map(|(area, _)| *area).fold(0.0, f64::max);
+        let Some(&(_, height_m)) = areas.values().find(|(area, _)| *area >= AS_LARGE * largest) else {
+            return Self::default();
+        };
+        let in_plane = |p: &glam::Vec3| (f64::from(p.y) - height_m).abs() <= 4.0 * flat_m;
+        let holds = (0..triangles.len()).map(|i| is_level(i) && triangles[i].iter().all(in_plane)).collect();
+        let is_below = |p: &glam::Vec3| f64::from(p.y) < height_m - 4.0 * flat_m;
+        let is_there = |i: &usize| !stage.sides(*i).is_none();
+        let casts = (0..triangles.len()).filter(is_there).any(|i| triangles[i].iter().any(is_below));
+        Self { height_m: Some(height_m), casts_from_m: height_m + 4.0 * flat_m, holds, casts }
+    }
+
+    /// Whether a triangle lies in the plane.
+    pub fn holds(&self, triangle: usize) -> bool {
+        self.holds.get(triangle).is_some_and(|&holds| holds)
+    }
+
+    /// Whether a triangle may shade something, if it is solid.
+    pub fn lets_cast(&self, triangle: usize) -> bool {
+        self.casts || !self.holds(triangle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, Vec3};
+    use sunbake::testing::{SceneBuilder, floor};
+
+    fn ground(builder: SceneBuilder) -> Ground {
+        Ground::new(&Stage::plain(builder.build(), None))
+    }
+
+    fn level() -> SceneBuilder {
+        SceneBuilder::new().soup(&floor(Vec2::splat(-5.0), Vec2::splat(5.0), 0.0))
+    }
+
+    #[test]
+    fn the_largest_level_plane_is_the_ground_and_casts_only_on_what_is_below() {
+        let table = || level().block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 1.0, 1.0));
+        let found = ground(table());
+        assert_eq!((found.holds.iter().filter(|&&h| h).count(), found.casts), (2, false), "{found:?}");
+        let found = ground(table().block(Vec3::new(2.0, -1.0, 2.0), Vec3::new(3.0, -0.5, 3.0)));
+        assert!(found.casts && found.lets_cast(0));
+    }
+
+    #[test]
+    fn what_is_not_level_is_no_ground() {
+        let slope = [[Vec3::ZERO, Vec3::new(1.0, 0.2, 0.0), Vec3::Z]];
+        let found = ground(SceneBuilder::new().soup(&slope));
+        assert!(found.height_m.is_none() && found.lets_cast(0) && !found.holds(0));
+    }
+}

@@ -1,0 +1,102 @@
+//! Shadow maps held against truth: at times of day, through cameras spread around, two of them in shadow.
+
+use super::masks::{camera_in_shadow, cameras_around, mask};
+use crate::View;
+use crate::compare::Defects;
+use crate::gpu::{Gpu, GpuError};
+use crate::image::Raster;
+use crate::light::Moment;
+use crate::shadow_maps::{MapSettings, reach_m};
+use crate::shot::Shot;
+use crate::stage::Stage;
+use crate::technique::{Light, ShadowMaps, Technique, Truth};
+use glam::DVec3;
+use sunbake::trace::Hit;
+
+/// Rays of soft truth.
+const SOFT_RAYS: u32 = 64;
+
+/// A shot, with what truth says of the sun's centre and of its disc.
+pub struct Seen<'a> {
+    /// What is seen.
+    pub shot: Shot<'a>,
+    /// Of its centre.
+    pub hard: Raster<f32>,
+    /// Of its disc.
+    pub soft: Raster<f32>,
+}
+
+/// What is drawn: moments, each through several cameras.
+pub struct Day<'a> {
+    /// The stage.
+    pub stage: &'a Stage,
+    /// Moments, with what is seen.
+    pub all: Vec<(Moment, Vec<Seen<'a>>)>,
+}
+
+impl<'a> Day<'a> {
+    /// A stage at `times` through six cameras, two of them in shadow; pictures of `edge_px` squared.
+    pub fn new(stage: &'a Stage, edge_px: u32, times: impl Iterator<Item = f64>) -> Self {
+        let seen = |t: f64| {
+            let moment = Moment::new(stage.path.as_ref(), t);
+            let towards = moment.sun_direction.as_dvec3();
+            let inside = [1, 2].into_iter().filter_map(|pick| camera_in_shadow(stage, towards, pick));
+            let view = |camera| View::new(&camera, [edge_px; 2], &stage.scene);
+            let views = cameras_around(stage).into_iter().chain(inside).map(view);
+            (moment, views.map(|view| Seen::new(stage, view, &moment)).collect())
+        };
+        Self { stage, all: times.map(seen).collect() }
+    }
+}
+
+impl<'a> Seen<'a> {
+    /// A view of a stage at a moment.
+    pub fn new(stage: &'a Stage, view: View, moment: &Moment) -> Self {
+        let shot = Shot::new(stage, view);
+        let hard = mask(&mut Truth::Hard, &shot, moment, Light::Sun);
+        let soft = mask(&mut Truth::Soft { rays: SOFT_RAYS }, &shot, moment, Light::Sun);
+        Self { shot, hard, soft }
+    }
+
+    /// What shadow maps make of it.
+    pub fn defects(&self, maps: &mut ShadowMaps, moment: &Moment) -> Result<Defects, GpuError> {
+        let drawn = maps.visibility(&self.shot, moment)?;
+        let depths_m = maps.renderer().depths_m(&self.shot.view)?;
+        let settings = *maps.settings();
+        let variant = settings.variant;
+        let truth = if variant.is_soft() { &self.soft } else { &self.hard };
+        let held = maps.renderer().maps().to_vec();
+        let reach = |point_m| reach_m(&settings, &held, point_m);
+        Ok(Defects::new(&self.shot, moment, variant.is_soft(), [&drawn, truth], &depths_m, reach))
+    }
+}
+
+/// All of a day's defects. Says which pictures have acne or leaks, if asked to.
+pub fn defects_of(gpu: &Gpu, day: &Day, settings: MapSettings, says_where: bool) -> Result<Defects, GpuError> {
+    let mut maps = ShadowMaps::new(gpu, day.stage, settings)?;
+    let mut all = Defects::default();
+    for (moment, seen) in &day.all {
+        for (camera, seen) in seen.iter().enumerate() {
+            let found = seen.defects(&mut maps, moment)?;
+            if says_where && found.acne.len() + found.leaks.len() > 0 {
+                println!(
+                    "{} {} t {:.3} camera {camera}: acne {} leaks {}",
+                    settings.variant,
+                    settings.size_texels,
+                    moment.t,
+                    found.acne.len(),
+                    found.leaks.len()
+                );
+            }
+            all.add(&found);
+        }
+    }
+    Ok(all)
+}
+
+/// The places that a shot's pixels show, world space, of those that show any.
+pub fn places(shot: &Shot) -> Vec<(usize, DVec3)> {
+    let geometry = &shot.stage.geometry;
+    let place = |hit: &Hit| geometry.point(hit.triangle as usize, hit.barycentric) + shot.stage.scene.centre_m;
+    shot.hits().iter().enumerate().filter_map(|(i, hit)| Some((i, place(hit.as_ref()?)))).collect()
+}
