@@ -7,7 +7,8 @@ use sunbake::sun::SunPath;
 use sunbake::testing::{SceneBuilder, block, cut, floor, opaque};
 use sunbake_runtime::compare::{Agreement, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
-use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique, Truth, Volumes};
+use sunbake_runtime::shadow_maps::{MapSettings, Variant};
+use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Truth, Volumes};
 use sunbake_runtime::testing::{bake, equinox, standing_sun, view};
 use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage};
 
@@ -19,7 +20,8 @@ fn gpu() -> Gpu {
 }
 
 fn techniques<'a>(gpu: &'a Gpu, stage: &'a Stage) -> Vec<Box<dyn Technique + 'a>> {
-    vec![
+    let map = |variant| Box::new(ShadowMaps::new(gpu, stage, MapSettings::new(variant)).unwrap()) as Box<dyn Technique>;
+    let mut all: Vec<Box<dyn Technique>> = vec![
         Box::new(BakedGpu::new(gpu, stage, Filter::Bilinear).unwrap()),
         Box::new(BakedGpu::new(gpu, stage, Filter::Nearest).unwrap()),
         Box::new(BakedCpu::new(stage, Filter::Bilinear)),
@@ -27,7 +29,9 @@ fn techniques<'a>(gpu: &'a Gpu, stage: &'a Stage) -> Vec<Box<dyn Technique + 'a>
         Box::new(Volumes::new(gpu, stage, VolumeSettings { sun_samples: 4, ..VolumeSettings::default() }).unwrap()),
         Box::new(Truth::Hard),
         Box::new(Truth::Soft { rays: 16 }),
-    ]
+    ];
+    all.extend(Variant::ALL.map(map));
+    all
 }
 
 /// Each technique's visibility at a moment; its colour must be finite.

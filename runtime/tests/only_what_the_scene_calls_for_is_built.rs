@@ -5,7 +5,8 @@ use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
 use sunbake_runtime::gpu::{Census, Gpu, VolumeSettings};
-use sunbake_runtime::technique::{BakedGpu, Technique, Volumes};
+use sunbake_runtime::shadow_maps::{MapSettings, Variant};
+use sunbake_runtime::technique::{BakedGpu, ShadowMaps, Technique, Volumes};
 use sunbake_runtime::testing::{bake, bake_lanes, equinox, standing_sun, view};
 use sunbake_runtime::{Filter, Moment, Shot, Stage};
 
@@ -176,4 +177,109 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
     volumes.visibility(&shot, &stage.moment(0.5)).unwrap();
     let found = volumes.census().unwrap();
     assert_eq!((found.passes, found.pipelines, found.stencil_pipelines), (2, 2, 0));
+}
+
+/// What shadow maps of a block on the ground build, with something below the ground or not.
+fn of_maps(variant: Variant, edit: impl Fn(SceneBuilder) -> SceneBuilder) -> Census {
+    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let scene = edit(SceneBuilder::new().soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0))).build();
+    let stage = Stage::plain(scene, Some(standing_sun(DVec3::new(0.3, 1.0, 0.2), 0.0047)));
+    let shot = Shot::new(&stage, view(&stage, DVec3::new(4.0, 3.0, 5.0), DVec3::ZERO, [16, 16]));
+    let mut maps = ShadowMaps::new(&gpu, &stage, MapSettings { size_texels: 64, ..MapSettings::new(variant) }).unwrap();
+    maps.visibility(&shot, &stage.moment(0.5)).unwrap();
+    maps.census().unwrap()
+}
+
+#[test]
+fn a_variant_builds_its_own_maps_and_pipelines_and_no_others() {
+    let block = |builder: SceneBuilder| builder.soup(&cube());
+    for variant in Variant::ALL {
+        let found = of_maps(variant, block);
+        let maps = match variant {
+            Variant::Planar => 0,
+            // From where the eye stands all of it is as near as it is far.
+            Variant::Cascades => found.shadow_maps.clamp(1, 4),
+            Variant::Cube => found.shadow_maps.clamp(1, 6),
+            _ => 1,
+        };
+        let (masks, mask_bytes) = match variant {
+            Variant::Ground => (2, 2 * 64 * 64),
+            Variant::Planar => (1, 16 * 16),
+            _ => (0, 0),
+        };
+        // The ground and what stands on it share their pipelines, but for those that light the ground apart.
+        let (shadow_pipelines, surface_pipelines) = match variant {
+            Variant::Ground => (4, 2), // Depths, what casts, and its blur across and down.
+            Variant::Planar => (1, 2),
+            _ => (1, 1),
+        };
+        let expected = Census {
+            passes: 2 + maps + if variant == Variant::Ground { 3 } else { masks },
+            pipelines: 1 + surface_pipelines + shadow_pipelines,
+            // Both sides cast.
+            two_sided_pipelines: shadow_pipelines.min(2),
+            vertex_buffers: 2,
+            bind_groups: 1,
+            targets: 2,
+            draws: 2,
+            shadow_pipelines,
+            shadow_maps: maps,
+            shadow_masks: masks,
+            shadow_bytes: maps as u64 * 64 * 64 * 4 + mask_bytes,
+            ..Census::default()
+        };
+        assert_eq!(found, expected, "{variant}");
+    }
+}
+
+#[test]
+fn where_nothing_can_be_in_shadow_there_is_no_map() {
+    for variant in Variant::ALL {
+        // The ground alone: whatever it could shade would lie below it.
+        let found = of_maps(variant, |builder| builder);
+        assert_eq!((found.passes, found.shadow_pipelines, found.shadow_maps), (2, 0, 0), "{variant}");
+        assert_eq!((found.shadow_masks, found.shadow_bytes), (0, 0), "{variant}");
+    }
+}
+
+#[test]
+fn a_map_tests_alpha_only_where_something_has_holes() {
+    let leaf = |builder: SceneBuilder| {
+        let triangles = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0);
+        let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
+        let colors = Some(vec![Vec4::new(1.0, 1.0, 1.0, 0.4); 6]);
+        let mesh = Mesh { positions, indices: (0..6).collect(), colors, ..Mesh::default() };
+        let material = Material { alpha: Alpha::Cut { cutoff: 0.5 }, ..opaque() };
+        builder.mesh_of(mesh, material, &[DMat4::IDENTITY])
+    };
+    let plain = of_maps(Variant::Compare, |builder| builder.soup(&cube()));
+    let cut = of_maps(Variant::Compare, leaf);
+    // Depths as the camera sees them, depths as the sun does, and what is lit.
+    assert_eq!((plain.alpha_test_pipelines, cut.alpha_test_pipelines), (0, 3));
+}
+
+#[test]
+fn a_map_is_kept_while_neither_the_sun_nor_what_it_follows_moves() {
+    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let scene = SceneBuilder::new().soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0)).soup(&cube()).build();
+    let stage = Stage::plain(scene, Some(equinox(35.0)));
+    let shots = [DVec3::new(4.0, 3.0, 5.0), DVec3::new(1.5, 1.0, 2.0)]
+        .map(|eye| Shot::new(&stage, view(&stage, eye, DVec3::ZERO, [16, 16])));
+    for variant in Variant::ALL.into_iter().filter(|&variant| variant != Variant::Planar) {
+        let mut maps =
+            ShadowMaps::new(&gpu, &stage, MapSettings { size_texels: 64, ..MapSettings::new(variant) }).unwrap();
+        let mut drawn = |shot: &Shot, t: f64| {
+            maps.visibility(shot, &stage.moment(t)).unwrap();
+            (maps.report().drawn, maps.report().maps)
+        };
+        let first = drawn(&shots[0], 0.4);
+        assert!(first.0 == first.1 && first.0 > 0, "{variant}");
+        assert_eq!(drawn(&shots[0], 0.4), (0, first.1), "{variant}");
+        let moved = drawn(&shots[1], 0.4);
+        // Cascades of one map hold all that there is.
+        let follows = variant.follows_view() && (variant, moved.1) != (Variant::Cascades, 1);
+        assert_eq!(moved.0, if follows { moved.1 } else { 0 }, "{variant}");
+        let later = drawn(&shots[1], 0.5);
+        assert!(later.0 == later.1 && later.0 > 0, "{variant}");
+    }
 }

@@ -42,6 +42,26 @@ fn pages() -> Vec<PageVariant> {
     lanes.iter().flat_map(of_lanes).collect()
 }
 
+fn shadow_sources() -> Vec<ShadowSource> {
+    let mut all = vec![ShadowSource::Down, ShadowSource::Open, ShadowSource::Mask, ShadowSource::Flat];
+    for filter in [ShadowFilter::One, ShadowFilter::Sixteen, ShadowFilter::Four, ShadowFilter::Penumbra] {
+        for tap in [ShadowTap::Manual, ShadowTap::Nearest, ShadowTap::Filtered, ShadowTap::Gathered] {
+            for views in [ShadowViews::One, ShadowViews::First, ShadowViews::Blended] {
+                let bias = ShadowBias {
+                    constant_m: 0.01,
+                    constant_texels: 0.5,
+                    slope: 0.0,
+                    normal: 1.0,
+                    reach: 1.0,
+                    has_plane: views == ShadowViews::One,
+                };
+                all.push(ShadowSource::Maps { filter, tap, views, bias, margin_texels: 4.0 });
+            }
+        }
+    }
+    all
+}
+
 #[test]
 fn every_composed_shader_is_valid() {
     validated(&sky_shader());
@@ -54,8 +74,16 @@ fn every_composed_shader_is_valid() {
             }
         }
     }
+    validated(&blur_shader());
+    validated(&shadow_probe_shader());
     for surface in surfaces() {
         validated(&depth_shader(surface));
+        validated(&shadow_depth_shader(surface));
+        validated(&shadow_mask_shader(surface, true));
+        validated(&shadow_mask_shader(surface, false));
+        for sun in shadow_sources() {
+            validated(&mapped_visibility_shader(surface, &sun));
+        }
         for light in [HardLight::SunGate, HardLight::Sun, HardLight::LampGate, HardLight::Lamp] {
             validated(&hard_light_shader(surface, light));
         }
@@ -64,6 +92,12 @@ fn every_composed_shader_is_valid() {
                 validated(&lit_shader(surface, &page, filter));
                 validated(&visibility_shader(surface, &page, filter));
                 validated(&lamp_visibility_shader(surface, &page, filter));
+            }
+        }
+        let lamp_page = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
+        for page in [PageVariant::default(), lamp_page] {
+            for sun in shadow_sources() {
+                validated(&mapped_lit_shader(surface, &page, Filter::Bilinear, &sun));
             }
         }
     }
@@ -125,6 +159,12 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
     let page = PageVariant { ambient: AmbientModel::Sky, ..PageVariant::default() };
     let lit = validated(&lit_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
     assert_eq!(members(&lit, "Sky"), (offsets!(SkyUniform: coefficients), size_of::<SkyUniform>() as u32));
+    let [_, _, mask, _] = shadow_sources()[..4] else { panic!("there are sources without maps") };
+    let mapped = validated(&mapped_visibility_shader(SurfaceVariant::default(), &mask));
+    let rust = offsets!(ShadowViewUniform: clip_from_point, origin_m, z_per_metre, eye_from_origin_m, ground_height_m);
+    assert_eq!(members(&mapped, "ShadowView"), (rust, size_of::<ShadowViewUniform>() as u32));
+    let rust = offsets!(ShadowMapsUniform: views, count);
+    assert_eq!(members(&mapped, "ShadowMaps"), (rust, size_of::<ShadowMapsUniform>() as u32));
     let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
     assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));
 }
