@@ -88,7 +88,7 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Planar {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the largest level plane, {height_m:.3} m above the scene's middle: what casts is laid flat on \
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: what casts is laid flat on \
                      it, and nothing else is in shadow"
                 ),
                 None => "no surface is level: there is no ground, and nothing is in shadow".to_owned(),
@@ -115,7 +115,7 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Ground {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the largest level plane, {height_m:.3} m above the scene's middle: it reads a blurred picture of \
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: it reads a blurred picture of \
                      what casts, all else compares depths"
                 ),
                 None => "no surface is level: there is no ground, and all compare depths".to_owned(),
