@@ -15,10 +15,8 @@
 #[path = "../../bake/benches/common/mod.rs"]
 mod common;
 
-use std::collections::HashMap;
 use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
-use sunbake::sun::{DayOutcome, SunPath, day};
 use sunbake_runtime::compare::Defects;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
@@ -36,8 +34,7 @@ const SHARED: [&str; 5] = [
 ];
 
 fn main() {
-    let given: HashMap<String, String> =
-        std::env::args().filter_map(|a| a.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned()))).collect();
+    let given = common::given();
     let number = |key: &str, otherwise: usize| given.get(key).and_then(|v| v.parse().ok()).unwrap_or(otherwise);
     let wants = |part: &str| given.get("only").is_none_or(|only| only == part);
     let sizes: Vec<u32> = given
@@ -80,14 +77,7 @@ fn main() {
 
 fn stage(file: &Path) -> Result<Stage, String> {
     let scene = load(file, &LoadLimits::default()).map_err(|e| e.to_string())?;
-    Ok(Stage::plain(scene, Some(june()?)))
-}
-
-fn june() -> Result<SunPath, String> {
-    match day(&common::summer_day()).map_err(|e| e.to_string())? {
-        DayOutcome::Path(path) => Ok(path),
-        DayOutcome::NoSun { .. } => Err("the sun does not rise".into()),
-    }
+    Ok(Stage::plain(scene, Some(common::summer_path()?)))
 }
 
 /// Means over frames, in seconds.

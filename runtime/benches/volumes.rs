@@ -13,10 +13,8 @@
 #[path = "../../bake/benches/common/mod.rs"]
 mod common;
 
-use std::collections::HashMap;
 use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
-use sunbake::sun::{DayOutcome, SunPath, day};
 use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::technique::{Light, Technique, Truth, Volumes};
@@ -35,8 +33,7 @@ const SHARED: [&str; 4] = [
 const SOFT_RAYS: u32 = 256;
 
 fn main() {
-    let given: HashMap<String, String> =
-        std::env::args().filter_map(|a| a.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned()))).collect();
+    let given = common::given();
     let number = |key: &str, otherwise: usize| given.get(key).and_then(|v| v.parse().ok()).unwrap_or(otherwise);
     let wants = |part: &str| given.get("only").is_none_or(|only| only == part);
     let gpu = match Gpu::open() {
@@ -72,14 +69,7 @@ fn main() {
 
 fn stage(file: &Path) -> Result<Stage, String> {
     let scene = load(file, &LoadLimits::default()).map_err(|e| e.to_string())?;
-    Ok(Stage::plain(with_solid_leaves(scene), Some(june()?)))
-}
-
-fn june() -> Result<SunPath, String> {
-    match day(&common::summer_day()).map_err(|e| e.to_string())? {
-        DayOutcome::Path(path) => Ok(path),
-        DayOutcome::NoSun { .. } => Err("the sun does not rise".into()),
-    }
+    Ok(Stage::plain(with_solid_leaves(scene), Some(common::summer_path()?)))
 }
 
 /// A shot, and truth.

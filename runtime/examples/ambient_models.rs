@@ -6,6 +6,9 @@
 //! on the CPU: by the normal alone, with ambient occlusion, with bent normals and with the sky in harmonics; the sky alone,
 //! the sun with it, and how far the first is from what the normal alone says.
 
+mod common;
+
+use common::{Anything, write};
 use std::path::Path;
 use std::time::Instant;
 use sunbake::sun::clock_text;
@@ -15,8 +18,6 @@ use sunbake_runtime::sheet::{Table, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique};
 use sunbake_runtime::texture::srgb_from_linear;
 use sunbake_runtime::{AmbientModel, Camera, Filter, Moment, Raster, Shot, Stage, View};
-
-type Anything = Box<dyn std::error::Error>;
 
 /// Size of each picture, and samples along each of a pixel's edges.
 const SIZE: [u32; 2] = [360, 220];
@@ -93,14 +94,4 @@ fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
     let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
     let reduced = display.reduced(SUPERSAMPLE);
     Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
-}
-
-fn write(file: &Path, picture: &Raster<[u8; 3]>) -> Result<(), Anything> {
-    let mut encoder =
-        png::Encoder::new(std::io::BufWriter::new(std::fs::File::create(file)?), picture.size[0], picture.size[1]);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(picture.pixels.as_flattened())?;
-    Ok(writer.finish()?)
 }

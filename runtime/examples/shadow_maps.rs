@@ -5,6 +5,9 @@
 //! Draws our own scene from nearby, or another through its default camera, on a June day in the desert, at 17:00 unless told otherwise,
 //! with maps of 1024 texels. Hard variants are held against truth of the sun's centre, soft ones against truth of its disc.
 
+mod common;
+
+use common::{Anything, write};
 use glam::DVec3;
 use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
@@ -17,8 +20,6 @@ use sunbake_runtime::sheet::{Table, heat, heat_map};
 use sunbake_runtime::technique::{ShadowMaps, Technique, Truth};
 use sunbake_runtime::texture::srgb_from_linear;
 use sunbake_runtime::{Camera, Moment, Raster, Shot, Stage, View};
-
-type Anything = Box<dyn std::error::Error>;
 
 /// Size of each picture.
 const SIZE: [u32; 2] = [330, 220];
@@ -108,14 +109,4 @@ fn at(path: Option<&SunPath>, clock: &str) -> Result<f64, Anything> {
 fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
     let codes = light.pixels.iter().map(|&light| codes_from_display(display_from_light(light)));
     Raster { size: light.size, pixels: codes.collect() }
-}
-
-fn write(file: &Path, picture: &Raster<[u8; 3]>) -> Result<(), Anything> {
-    let mut encoder =
-        png::Encoder::new(std::io::BufWriter::new(std::fs::File::create(file)?), picture.size[0], picture.size[1]);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_compression(png::Compression::High);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(picture.pixels.as_flattened())?;
-    Ok(writer.finish()?)
 }

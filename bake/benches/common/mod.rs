@@ -1,7 +1,8 @@
 //! What the benches share: scenes and a day.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use sunbake::sun::DayRequest;
+use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 
 /// Our own scene and those of the shared ones (paths in their folder) that are on this machine; says which are not.
 pub fn scenes(shared: &[&str]) -> Vec<PathBuf> {
@@ -24,4 +25,19 @@ pub fn summer_day() -> DayRequest {
         north_deg: 0.0,
         window: None,
     }
+}
+
+/// The path of the sun over it.
+#[allow(dead_code, reason = "some of the benches need no sun")]
+pub fn summer_path() -> Result<SunPath, String> {
+    match day(&summer_day()).map_err(|e| e.to_string())? {
+        DayOutcome::Path(path) => Ok(path),
+        DayOutcome::NoSun { .. } => Err("the sun does not rise".into()),
+    }
+}
+
+/// Options given as `name=value`.
+#[allow(dead_code, reason = "some of the benches read their own")]
+pub fn given() -> HashMap<String, String> {
+    std::env::args().filter_map(|a| a.split_once('=').map(|(k, v)| (k.to_owned(), v.to_owned()))).collect()
 }

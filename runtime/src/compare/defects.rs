@@ -42,7 +42,7 @@ pub struct Defects {
     pub wrong: usize,
     /// Sum of all differences.
     pub error: f64,
-    /// Lit pixels far from any shadow that came out darker, in row order; of the last picture that was added.
+    /// Lit pixels far from any shadow that came out darker: in row order, picture after picture.
     pub acne: Vec<usize>,
     /// Dark pixels far from any light that came out lighter.
     pub leaks: Vec<usize>,

@@ -117,7 +117,7 @@ fn times<'a>(
         Bits::Eight => wgpu::TextureFormat::Rgba8Uint,
         Bits::Sixteen => wgpu::TextureFormat::Rgba16Uint,
     };
-    let texture = texture(gpu, "times", [maps.width, maps.height], layers, format);
+    let texture = texture(gpu, "times", [maps.width, maps.height], layers, format, FILLED_AND_READ);
     for (layer, codes) in slices.enumerate() {
         let bytes: Cow<[u8]> = match bits {
             Bits::Eight => codes.iter().flatten().map(|&code| code as u8).collect(),
@@ -174,7 +174,7 @@ fn slices_view(
     slices: &[Vec<u8>],
 ) -> wgpu::TextureView {
     let size = [maps.width, maps.height];
-    let texture = texture(gpu, label, size, slices.len() as u32, format);
+    let texture = texture(gpu, label, size, slices.len() as u32, format, FILLED_AND_READ);
     let texel_bytes = if format == wgpu::TextureFormat::R16Uint { 2 } else { 8 };
     for (slice, bytes) in slices.iter().enumerate() {
         upload(gpu, &texture, 0, slice as u32, size, texel_bytes, bytes);
@@ -185,7 +185,18 @@ fn slices_view(
     })
 }
 
-fn texture(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
+/// What maps are for.
+const FILLED_AND_READ: wgpu::TextureUsages = wgpu::TextureUsages::TEXTURE_BINDING.union(wgpu::TextureUsages::COPY_DST);
+
+/// A texture of one level.
+pub(super) fn texture(
+    gpu: &Gpu,
+    label: &str,
+    size: [u32; 2],
+    layers: u32,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
         size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
@@ -193,7 +204,7 @@ fn texture(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::Te
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        usage,
         view_formats: &[],
     })
 }

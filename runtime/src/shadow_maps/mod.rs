@@ -4,7 +4,7 @@
 //! Everything here is geometry on the CPU, in `f64`; the passes are in [`crate::gpu`]. It reads in this order:
 //!
 //! ```text
-//! ground       the largest level plane                    } once per
+//! ground       the lowest large level plane               } once per
 //! extents      what casts and what receives               } stage
 //! projection   a map's matrix
 //! cascades, polyhedron, perspective     maps of a view    } once per view

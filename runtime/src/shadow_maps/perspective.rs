@@ -22,8 +22,7 @@
 //!   pixels fall into; and if none of them gains anything, the map is straight.
 //! * Bias is in metres and texels, as everywhere: depth is metres along the light, over `w` ([`super::projection`]).
 //! * Where the sun stands in view, one map would have to open to half of all directions. The *cube* form has up to six, at
-//!   right angles, around the sun; each is fitted to what it sees, with a margin over
-//!   its neighbours.
+//!   right angles, around the sun; each is fitted to what it sees, with a margin over its neighbours.
 
 use super::extents::{Extents, Near};
 use super::polyhedron::Polyhedron;

@@ -172,9 +172,9 @@ impl<'g> MapRenderer<'g> {
         self.halfway
     }
 
-    /// Maps that the last frame read.
+    /// Maps that the last frame read; none if nothing in it could be in shadow, whatever earlier ones left.
     pub fn maps(&self) -> &[MapProjection] {
-        &self.drawn
+        &self.drawn[..self.report.maps.min(self.drawn.len())]
     }
 
     /// Forgets the maps that are there.
@@ -197,18 +197,16 @@ impl<'g> MapRenderer<'g> {
         if output == Output::LampVisibility || is_dark || moment.sun_direction == Vec3::ZERO || towards.y <= least {
             return SunNow::Down;
         }
-        if self.extents.is_none_or(|extents| extents.axes.towards != towards.normalize()) {
-            self.extents = Some(self.shadow_scene.extents(towards));
-        }
-        let extents = self.extents.unwrap_or_else(|| self.shadow_scene.extents(towards));
+        let extents = match self.extents {
+            Some(extents) if extents.axes.towards == towards.normalize() => extents,
+            _ => *self.extents.insert(self.shadow_scene.extents(towards)),
+        };
         if self.settings.variant == Variant::Planar {
             let has_both = self.shadow_scene.ground.height_m.is_some() && !extents.casters.is_empty();
             return if has_both { SunNow::Shaded(Vec::new()) } else { SunNow::Open };
         }
-        let maps = {
-            let radius_rad = f64::from(moment.sun_radius_rad);
-            self.settings.maps(&self.shadow_scene, &extents, view, radius_rad, self.clamps_depth())
-        };
+        let radius_rad = f64::from(moment.sun_radius_rad);
+        let maps = self.settings.maps(&self.shadow_scene, &extents, view, radius_rad, self.clamps_depth());
         if maps.is_empty() { SunNow::Open } else { SunNow::Shaded(maps) }
     }
 
@@ -276,9 +274,7 @@ impl<'g> MapRenderer<'g> {
         if self.reads.has_depths {
             missing.extend(casters.into_iter().map(ProgramKey::Map));
             if self.depths.as_ref().is_none_or(|depths| depths.layers.len() < count) {
-                let mebibytes = (4 * u64::from(size_texels).pow(2) * count as u64) >> 20;
-                let made = gpu.checked("making shadow maps", || Depths::new(gpu, size_texels, count as u32));
-                self.depths = Some(made.map_err(|_| GpuError::MapMemory { mebibytes })??);
+                self.depths = Some(Depths::new(gpu, size_texels, count as u32)?);
                 (self.read_group, self.drawn) = (None, Vec::new());
             }
         }

@@ -1,6 +1,7 @@
 //! What shadow maps are drawn into and read from.
 
 use super::super::device::{Gpu, GpuError};
+use super::super::maps::texture;
 use super::super::target::DEPTH_FORMAT;
 use super::probe::comparison_sampler;
 use crate::shadow_maps::{MOST_MAPS, MapProjection};
@@ -10,6 +11,10 @@ use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowViewUniform};
 
 /// Format of pictures of what casts.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// What both kinds of picture are for.
+const DRAWN_AND_READ: wgpu::TextureUsages =
+    wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
 /// A picture of what casts.
 pub struct Mask {
@@ -22,7 +27,7 @@ pub struct Mask {
 impl Mask {
     /// One of a size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let view = texture(gpu, "what casts", size, 1, MASK_FORMAT).create_view(&Default::default());
+        let view = texture(gpu, "what casts", size, 1, MASK_FORMAT, DRAWN_AND_READ).create_view(&Default::default());
         Self { size, view }
     }
 
@@ -45,13 +50,13 @@ pub struct Depths {
 impl Depths {
     /// So many of a size.
     pub fn new(gpu: &Gpu, size_texels: u32, count: u32) -> Result<Self, GpuError> {
-        let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
-        if u64::from(size_texels) > limit {
-            return Err(GpuError::MapMemory {
-                mebibytes: (4 * u64::from(size_texels).pow(2) * u64::from(count)) >> 20,
-            });
+        let mebibytes = (4 * u64::from(size_texels).pow(2) * u64::from(count)) >> 20;
+        let too_large = || GpuError::MapMemory { mebibytes };
+        if size_texels > gpu.device.limits().max_texture_dimension_2d {
+            return Err(too_large());
         }
-        let texture = texture(gpu, "shadow maps", [size_texels; 2], count, DEPTH_FORMAT);
+        let make = || texture(gpu, "shadow maps", [size_texels; 2], count, DEPTH_FORMAT, DRAWN_AND_READ);
+        let texture = gpu.checked("making shadow maps", make).map_err(|_| too_large())?;
         let layer = |layer| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(wgpu::TextureViewDimension::D2),
@@ -71,19 +76,6 @@ impl Depths {
     pub fn bytes(&self) -> u64 {
         4 * u64::from(self.size_texels).pow(2) * self.layers.len() as u64
     }
-}
-
-fn texture(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    })
 }
 
 /// One map's matrix, for the pass that draws it.
