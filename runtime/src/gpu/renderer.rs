@@ -6,6 +6,7 @@ use super::device::{Gpu, GpuError};
 use super::program::{Program, Source, State, depth_state};
 use super::readback;
 use super::scene::{SceneOnGpu, depth_key};
+use super::stopwatch::{FrameTimes, Phase, Stopwatch};
 use super::target::{DEPTH_FORMAT, LIT_FORMAT, Target, VISIBILITY_FORMAT};
 use crate::light::Moment;
 use crate::stage::Stage;
@@ -49,6 +50,8 @@ pub struct Renderer<'g> {
     /// Built when an output is first asked for. The depth programs serve all outputs.
     programs: BTreeMap<ProgramKey, Program>,
     targets: BTreeMap<Output, Target>,
+    stopwatch: Option<Stopwatch>,
+    times: Option<FrameTimes>,
 }
 
 /// A batch's program does not depend on which image it draws with; on its page it does.
@@ -63,7 +66,25 @@ impl<'g> Renderer<'g> {
     /// Uploads a stage.
     pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
         let scene = gpu.checked("uploading the set", || SceneOnGpu::new(gpu, stage))??;
-        Ok(Self { gpu, filter, scene, programs: BTreeMap::new(), targets: BTreeMap::new() })
+        Ok(Self {
+            gpu,
+            filter,
+            scene,
+            programs: BTreeMap::new(),
+            targets: BTreeMap::new(),
+            stopwatch: None,
+            times: None,
+        })
+    }
+
+    /// The same, with passes timed where the GPU can.
+    pub fn timed(self) -> Self {
+        Self { stopwatch: Stopwatch::new(self.gpu), ..self }
+    }
+
+    /// Seconds that the last frame's passes took, if they were timed.
+    pub fn times(&self) -> Option<FrameTimes> {
+        self.times
     }
 
     /// The picture at a moment, in linear light.
@@ -86,10 +107,15 @@ impl<'g> Renderer<'g> {
         gpu.checked("building pipelines", || self.prepare(view.size, output))??;
         gpu.checked("drawing", || {
             self.scene.frame.write(gpu, view, moment);
+            if let Some(stopwatch) = &mut self.stopwatch {
+                stopwatch.start();
+            }
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             self.depth_pass(&mut encoder, output);
             self.surface_pass(&mut encoder, output);
-            readback::read(gpu, &self.targets[&output], output.channels(), encoder)
+            let picture = readback::read(gpu, &self.targets[&output], output.channels(), encoder)?;
+            self.times = self.stopwatch.as_ref().map(|stopwatch| stopwatch.read(gpu)).transpose()?;
+            Ok(picture)
         })?
     }
 
@@ -139,10 +165,11 @@ impl<'g> Renderer<'g> {
         }
     }
 
-    fn depth_pass(&self, encoder: &mut wgpu::CommandEncoder, output: Output) {
+    fn depth_pass(&mut self, encoder: &mut wgpu::CommandEncoder, output: Output) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("depth"),
             depth_stencil_attachment: Some(self.targets[&output].depth_attachment(wgpu::LoadOp::Clear(0.0))),
+            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Depth)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
@@ -151,12 +178,13 @@ impl<'g> Renderer<'g> {
         }
     }
 
-    fn surface_pass(&self, encoder: &mut wgpu::CommandEncoder, output: Output) {
+    fn surface_pass(&mut self, encoder: &mut wgpu::CommandEncoder, output: Output) {
         let background = output.background();
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("surfaces"),
             color_attachments: &[Some(self.targets[&output].picture_attachment(wgpu::LoadOp::Clear(background)))],
             depth_stencil_attachment: Some(self.targets[&output].depth_attachment(wgpu::LoadOp::Load)),
+            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Light)),
             ..Default::default()
         });
         pass.set_bind_group(0, &self.scene.frame.group, &[]);

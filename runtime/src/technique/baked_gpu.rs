@@ -4,7 +4,7 @@
 //! bytes, and for each pixel four texels of two textures a layer. Wrong where [`super::BakedCpu`] is, and within a
 //! rounding of it elsewhere.
 
-use super::Technique;
+use super::{FrameCost, Technique};
 use crate::gpu::{Census, Gpu, GpuError, Renderer};
 use crate::image::Raster;
 use crate::light::Moment;
@@ -22,6 +22,11 @@ impl<'g> BakedGpu<'g> {
     /// Uploads a stage.
     pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
         Ok(Self { renderer: Renderer::new(gpu, stage, filter)? })
+    }
+
+    /// The same, with passes timed where the GPU can.
+    pub fn timed(self) -> Self {
+        Self { renderer: self.renderer.timed() }
     }
 }
 
@@ -44,6 +49,10 @@ impl Technique for BakedGpu<'_> {
 
     fn bytes(&self) -> u64 {
         self.renderer.census().map_bytes
+    }
+
+    fn cost(&self) -> FrameCost {
+        FrameCost { cpu_seconds: 0.0, passes: self.renderer.times() }
     }
 
     fn census(&self) -> Option<Census> {

@@ -15,12 +15,22 @@ pub use shadow_maps::ShadowMaps;
 pub use truth::{Light, Truth};
 pub use volumes::Volumes;
 
-use crate::gpu::{Census, GpuError};
+use crate::gpu::{Census, FrameTimes, GpuError};
 use crate::image::Raster;
 use crate::light::Moment;
 use crate::shade;
 use crate::shot::Shot;
 use glam::Vec3;
+use serde::Serialize;
+
+/// What a frame took.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct FrameCost {
+    /// Seconds on the CPU to find what its passes draw: silhouettes, or where maps lie.
+    pub cpu_seconds: f64,
+    /// Seconds of its passes by the adapter's clock, where they were timed.
+    pub passes: Option<FrameTimes>,
+}
 
 /// A way to know how much of the sun is seen.
 pub trait Technique {
@@ -42,6 +52,11 @@ pub trait Technique {
 
     /// Bytes it keeps from frame to frame, beyond the scene itself.
     fn bytes(&self) -> u64;
+
+    /// What the last frame took, where it was drawn in passes.
+    fn cost(&self) -> FrameCost {
+        FrameCost::default()
+    }
 
     /// The picture with what finds its shadows made visible; none where that is nothing one could see.
     fn shown(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {

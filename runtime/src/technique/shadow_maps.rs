@@ -4,7 +4,7 @@
 //! depths. Wrong by the size of a texel at every edge, and where what casts is thinner than one; how far, and what each variant
 //! does about it, is in [`crate::shadow_maps::Variant`] and measured in `ARCHITECTURE.md`.
 
-use super::Technique;
+use super::{FrameCost, Technique};
 use crate::gpu::{Census, Gpu, GpuError, MapRenderer, MapReport};
 use crate::image::Raster;
 use crate::light::Moment;
@@ -61,6 +61,11 @@ impl Technique for ShadowMaps<'_> {
     fn bytes(&self) -> u64 {
         let census = self.renderer.census();
         census.shadow_bytes + census.map_bytes
+    }
+
+    fn cost(&self) -> FrameCost {
+        let report = self.renderer.report();
+        FrameCost { cpu_seconds: report.fit_seconds, passes: report.times }
     }
 
     fn census(&self) -> Option<Census> {

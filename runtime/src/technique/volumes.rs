@@ -5,7 +5,7 @@
 //! hard edges; wrong where leaves are cut out of cards, whose whole cards cast, and where a shadow is shallower than a 64th of a
 //! pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies on it.
 
-use super::Technique;
+use super::{FrameCost, Technique};
 use crate::gpu::{Census, FrameReport, Gpu, GpuError, VolumeRenderer, VolumeSettings};
 use crate::image::Raster;
 use crate::light::Moment;
@@ -66,6 +66,12 @@ impl Technique for Volumes<'_> {
     fn bytes(&self) -> u64 {
         let census = self.renderer.census();
         census.volume_bytes + census.map_bytes
+    }
+
+    fn cost(&self) -> FrameCost {
+        let report = self.renderer.report();
+        let cpu_seconds = report.lights.iter().map(|light| light.find_seconds + light.plan_seconds).sum();
+        FrameCost { cpu_seconds, passes: report.times }
     }
 
     fn census(&self) -> Option<Census> {
