@@ -21,6 +21,7 @@ pub mod loss_map;
 pub mod maps;
 pub mod plan;
 pub mod progress;
+pub mod report;
 pub mod scene;
 pub mod settings;
 pub mod sun;

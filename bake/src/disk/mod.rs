@@ -1,5 +1,6 @@
 //! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`mod@write`] writes one; only [`mod@read`] reads one.
 
+pub mod folder;
 pub mod manifest;
 pub mod read;
 pub mod write;

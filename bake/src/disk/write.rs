@@ -1,144 +1,39 @@
 //! Writes a baked set. The only writer.
 //!
-//! Everything goes into a folder beside the target, under a name that nothing reads; [`SetWriter::finish`] renames it into
-//! place. A bake that stops before that, for whatever reason, leaves the old set or none.
+//! It is written beside its target and moved into place when it is whole (`folder.rs`): a bake that stops before that, for
+//! whatever reason, leaves the old set or none.
 
+use super::folder::{FolderKind, FolderWriter};
 use super::manifest::{AtlasEntry, LampMapsEntry, LaneEntry, LayerEntry, Manifest};
 use super::read::MANIFEST_FILE;
 use crate::maps::{Bits, LaneMaps, LayerMaps, PageMaps};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+use std::path::Path;
 
 /// Name of the scene in a set's folder.
 pub const SCENE_FILE: &str = "scene.glb";
 /// Name of the scene with ambient occlusion at its vertices.
 pub const VERTICES_FILE: &str = "vertices.glb";
-/// How the folder of an unfinished bake is called, after a dot and the target's name.
-const PARTIAL_SUFFIX: &str = ".sunbake-partial";
 
 /// Why a set could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// The target is there already.
-    #[error("{} exists: choose another folder with -o, or replace it with --force", target.display())]
-    Exists {
-        /// The target.
-        target: PathBuf,
-    },
-    /// The target is there and is no set, so it is not replaced even by force.
-    #[error(
-        "{} exists and is not a baked set, so --force will not replace it: choose another folder with -o, or remove it yourself",
-        target.display()
-    )]
-    NotASet {
-        /// The target.
-        target: PathBuf,
-    },
-    /// The target's parent folder is missing, or cannot be written.
-    #[error("cannot write in {}: {source}; choose another folder with -o", folder.display())]
-    Folder {
-        /// The parent.
-        folder: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A file could not be written.
-    #[error("cannot write {name}: {source}; nothing was left behind, so make room or choose another folder with -o")]
-    File {
-        /// Its name within the set.
-        name: String,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The finished set could not be moved into place.
-    #[error("cannot move the finished set to {}: {source}", target.display())]
-    Rename {
-        /// The target.
-        target: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-}
+pub use super::folder::FolderError as WriteError;
+
+/// What a set's folder is.
+const KIND: FolderKind = FolderKind { marker: MANIFEST_FILE, what: "a baked set", noun: "set" };
 
 /// A set being written. Dropped before it is finished, it takes back whatever it made.
 #[derive(Debug)]
 pub struct SetWriter {
-    target: PathBuf,
-    partial: TempDir,
+    folder: FolderWriter,
     bytes: u64,
-    /// After `partial`, which lies in it and has to go first.
-    _parent: MadeFolders,
-}
-
-/// Folders that were made on the way to the target, outermost first. Those that stay empty are removed again.
-#[derive(Debug)]
-struct MadeFolders(Vec<PathBuf>);
-
-impl MadeFolders {
-    fn make(folder: &Path) -> std::io::Result<Self> {
-        let missing = folder.ancestors().take_while(|f| !f.as_os_str().is_empty() && !f.exists());
-        let mut made = Self(Vec::new());
-        let missing: Vec<&Path> = missing.collect();
-        for folder in missing.into_iter().rev() {
-            match std::fs::create_dir(folder) {
-                Ok(()) => made.0.push(folder.to_owned()),
-                // Another process was faster.
-                Err(_) if folder.is_dir() => {}
-                Err(error) => return Err(error),
-            }
-        }
-        Ok(made)
-    }
-}
-
-impl Drop for MadeFolders {
-    fn drop(&mut self) {
-        for folder in self.0.iter().rev() {
-            // Only empty folders can be removed so: one that holds a set stays.
-            let _ = std::fs::remove_dir(folder);
-        }
-    }
-}
-
-/// Whether a set may be written at `target`.
-fn check_target(target: &Path, force: bool) -> Result<(), WriteError> {
-    let Ok(metadata) = std::fs::metadata(target).or_else(|_| std::fs::symlink_metadata(target)) else { return Ok(()) };
-    let is_empty = || std::fs::read_dir(target).is_ok_and(|mut entries| entries.next().is_none());
-    if metadata.is_dir() && is_empty() {
-        return Ok(());
-    }
-    if !force {
-        return Err(WriteError::Exists { target: target.to_owned() });
-    }
-    match metadata.is_dir() && target.join(MANIFEST_FILE).is_file() {
-        true => Ok(()),
-        false => Err(WriteError::NotASet { target: target.to_owned() }),
-    }
 }
 
 impl SetWriter {
     /// Opens a folder beside `target` to write in.
     pub fn begin(target: &Path, force: bool) -> Result<Self, WriteError> {
-        check_target(target, force)?;
-        // What is there already is replaced where it really is, be it named `.` or by a link.
-        let target = &target.canonicalize().unwrap_or_else(|_| target.to_owned());
-        let folder = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
-        let wrong = |source| WriteError::Folder { folder: folder.clone(), source };
-        let made = MadeFolders::make(&folder).map_err(wrong)?;
-        let name = target.file_name().unwrap_or_default().to_string_lossy();
-        let partial = tempfile::Builder::new()
-            .prefix(&format!(".{name}."))
-            .suffix(PARTIAL_SUFFIX)
-            .tempdir_in(&folder)
-            // The kind alone: the whole error names our hidden folder, which means nothing to anyone.
-            .map_err(|error| wrong(error.kind().into()))?;
-        Ok(Self { target: target.to_owned(), partial, bytes: 0, _parent: made })
+        Ok(Self { folder: FolderWriter::begin(target, force, KIND)?, bytes: 0 })
     }
 
     /// Writes the scene.
@@ -182,30 +77,7 @@ impl SetWriter {
             serde_json::to_writer_pretty(&mut *file, manifest)?;
             file.write_all(b"\n")
         })?;
-        make_readable(self.partial.path());
-        let wrong = |source| WriteError::Rename { target: self.target.clone(), source };
-        let replaced = self.set_old_aside().map_err(wrong)?;
-        match std::fs::rename(self.partial.path(), &self.target) {
-            Ok(()) => Ok(()),
-            Err(source) => {
-                if let Some(old) = &replaced {
-                    // The old set goes back to where it was; if even that fails, the error below names the cause.
-                    let _ = std::fs::rename(old.path().join("old"), &self.target);
-                }
-                Err(wrong(source))
-            }
-        }
-    }
-
-    /// Moves what the target holds into a folder that is removed when this set is in place.
-    fn set_old_aside(&self) -> std::io::Result<Option<TempDir>> {
-        if !self.target.exists() {
-            return Ok(None);
-        }
-        let parent = self.partial.path().parent().unwrap_or(Path::new("."));
-        let aside = tempfile::Builder::new().prefix(".old.").suffix(PARTIAL_SUFFIX).tempdir_in(parent)?;
-        std::fs::rename(&self.target, aside.path().join("old"))?;
-        Ok(Some(aside))
+        self.folder.finish()
     }
 
     /// Writes a file of the set.
@@ -214,12 +86,12 @@ impl SetWriter {
         name: &str,
         write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
     ) -> Result<(), WriteError> {
-        self.bytes += write_into(self.partial.path(), name, write)?;
+        self.bytes += self.folder.write_file(name, write)?;
         Ok(())
     }
 
     fn write_texture(&self, name: &str, codes: &[[u16; 4]], size: (u32, u32), bits: Bits) -> Result<u64, WriteError> {
-        write_into(self.partial.path(), name, |file| {
+        self.folder.write_file(name, |file| {
             let mut encoder = png::Encoder::new(file, size.0, size.1);
             encoder.set_color(png::ColorType::Rgba);
             encoder.set_depth(match bits {
@@ -233,18 +105,6 @@ impl SetWriter {
             Ok(writer.finish()?)
         })
     }
-}
-
-fn write_into(
-    folder: &Path,
-    name: &str,
-    write: impl FnOnce(&mut BufWriter<File>) -> std::io::Result<()>,
-) -> Result<u64, WriteError> {
-    let wrong = |source| WriteError::File { name: name.to_owned(), source };
-    let mut file = BufWriter::new(File::create(folder.join(name)).map_err(wrong)?);
-    write(&mut file).and_then(|()| file.flush()).map_err(wrong)?;
-    let length = file.get_ref().metadata().map_err(wrong)?.len();
-    Ok(length)
 }
 
 /// Names the textures of layers, and adds each with its name to `textures`.
@@ -269,17 +129,6 @@ fn bytes_of(codes: &[[u16; 4]], bits: Bits) -> Vec<u8> {
         Bits::Sixteen => codes.iter().flatten().flat_map(|code| code.to_be_bytes()).collect(),
     }
 }
-
-/// A temporary folder is its owner's alone; a set is as open as any folder the user makes.
-#[cfg(unix)]
-fn make_readable(folder: &Path) {
-    use std::os::unix::fs::PermissionsExt;
-    // A set that only its owner can read is still a set.
-    let _ = std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755));
-}
-
-#[cfg(not(unix))]
-fn make_readable(_folder: &Path) {}
 
 #[cfg(test)]
 mod tests {
@@ -375,7 +224,7 @@ mod tests {
         let precious = folder.path().join("home");
         std::fs::create_dir(&precious).unwrap();
         std::fs::write(precious.join("letter.txt"), "dear").unwrap();
-        assert!(matches!(write(&precious, true, Bits::Eight), Err(WriteError::NotASet { .. })));
+        assert!(matches!(write(&precious, true, Bits::Eight), Err(WriteError::NotOurs { .. })));
         assert!(precious.join("letter.txt").exists());
     }
 

@@ -1,0 +1,97 @@
+//! Where the names of points are written: beside each, without covering another name or point; nowhere if there is no room.
+//!
+//! Greedy: points come in their order, and each takes the first of eight places that is free.
+
+/// Pixels from a point's middle to its name.
+const GAP: f64 = 9.0;
+/// Half the edge of the square that a point keeps free around itself.
+const POINT: f64 = 5.0;
+
+/// A rectangle: least x and y, greatest x and y, in pixels.
+pub(super) type Room = [f64; 4];
+
+/// Where a name starts (its left end) and where its middle line is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Seat {
+    pub left: f64,
+    pub middle: f64,
+}
+
+/// Width of a text, about: fonts differ.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    0.58 * size * text.chars().count() as f64
+}
+
+/// A seat for the name of each point, if there is one within the frame.
+pub(super) fn seats(points: &[([f64; 2], &str)], size: f64, frame: Room) -> Vec<Option<Seat>> {
+    let mut taken: Vec<Room> = points.iter().map(|([x, y], _)| [x - POINT, y - POINT, x + POINT, y + POINT]).collect();
+    let mut seat = |&([x, y], text): &([f64; 2], &str)| {
+        let (wide, half) = (width(text, size), 0.6 * size);
+        let is_free = |room: &Room| within(room, &frame) && !taken.iter().any(|other| overlap(room, other));
+        let (seat, room) = around(x, y, wide)
+            .into_iter()
+            .map(|seat| (seat, room(&seat, wide, half)))
+            .find(|(_, room)| is_free(room))?;
+        taken.push(room);
+        Some(seat)
+    };
+    points.iter().map(|point| if point.1.is_empty() { None } else { seat(point) }).collect()
+}
+
+/// The places about a point, best first: curves of error against time fall to the right, so that up and right is free.
+fn around(x: f64, y: f64, wide: f64) -> [Seat; 8] {
+    let (right, left, middle) = (x + GAP, x - GAP - wide, x - 0.5 * wide);
+    let (above, below) = (y - 1.5 * GAP, y + 1.5 * GAP);
+    let near = 0.6 * GAP;
+    [
+        (x + near, y - 1.2 * GAP),
+        (right, y),
+        (middle, above),
+        (left, y),
+        (x - near - wide, y + 1.2 * GAP),
+        (middle, below),
+        (x - near - wide, y - 1.2 * GAP),
+        (x + near, y + 1.2 * GAP),
+    ]
+    .map(|(left, middle)| Seat { left, middle })
+}
+
+fn room(seat: &Seat, wide: f64, half: f64) -> Room {
+    [seat.left, seat.middle - half, seat.left + wide, seat.middle + half]
+}
+
+fn overlap(a: &Room, b: &Room) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+fn within(a: &Room, frame: &Room) -> bool {
+    a[0] >= frame[0] && a[1] >= frame[1] && a[2] <= frame[2] && a[3] <= frame[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::pseudo_random;
+
+    #[test]
+    fn names_cover_neither_each_other_nor_a_point() {
+        let mut state = 3;
+        let frame = [0.0, 0.0, 300.0, 200.0];
+        let places: Vec<[f64; 2]> =
+            (0..60).map(|_| [300.0 * pseudo_random(&mut state), 200.0 * pseudo_random(&mut state)]).collect();
+        let points: Vec<([f64; 2], &str)> = places.iter().map(|&at| (at, "rays:16")).collect();
+        let seats = seats(&points, 12.0, frame);
+        let rooms: Vec<Room> = seats.iter().flatten().map(|seat| room(seat, width("rays:16", 12.0), 7.2)).collect();
+        assert!(rooms.len() > 10, "{}", rooms.len());
+        for (k, a) in rooms.iter().enumerate() {
+            assert!(within(a, &frame) && rooms[..k].iter().all(|b| !overlap(a, b)));
+            assert!(places.iter().all(|[x, y]| !overlap(a, &[*x, *y, *x, *y])));
+        }
+    }
+
+    #[test]
+    fn a_lone_point_has_its_name() {
+        assert!(seats(&[([50.0, 50.0], "one")], 12.0, [0.0, 0.0, 100.0, 100.0])[0].is_some());
+        assert_eq!(seats(&[], 12.0, [0.0; 4]), []);
+    }
+}
