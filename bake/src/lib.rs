@@ -12,6 +12,7 @@
 pub mod ambient;
 pub mod atlas;
 mod bake;
+pub mod cost;
 pub mod disk;
 pub mod glb;
 pub mod heat;

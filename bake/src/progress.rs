@@ -39,6 +39,8 @@ impl Stage {
 
 /// Listens to a bake. Calls come from any thread.
 pub trait Progress: Sync {
+    /// What the stages to come are part of, where a bake is one of many things.
+    fn task(&self, _name: &str) {}
     /// A stage starts; `total` is how much it will count, 0 if it does not count.
     fn start(&self, stage: Stage, total: u64);
     /// The current stage got on by so much.

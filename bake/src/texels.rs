@@ -145,7 +145,7 @@ fn pick(total: usize, count: usize, seed: u64) -> Vec<usize> {
 }
 
 /// The next number in [0, 1) of SplitMix64 (Steele, Lea and Flood, 2014).
-fn uniform(state: &mut u64) -> f64 {
+pub(crate) fn uniform(state: &mut u64) -> f64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

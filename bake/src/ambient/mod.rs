@@ -33,7 +33,7 @@ mod seams;
 mod settle;
 mod vertices;
 
-pub use estimate::{AmbientEngine, AmbientPoint, Estimate, find_ambient};
+pub use estimate::{AmbientEngine, AmbientPoint, Estimate, Estimates, find_ambient};
 pub use harmonics::Coefficients;
 pub use page::{AmbientPage, Plane, Side};
 pub use seams::{Mismatch, Seams};

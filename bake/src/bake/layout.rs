@@ -9,7 +9,7 @@ use crate::settings::{AmbientRequest, BakeSettings};
 
 /// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
 /// settings that it came to.
-pub(super) fn unwrap_somehow(
+pub(crate) fn unwrap_somehow(
     scene: &Scene,
     asked: &BakeSettings,
     warnings: &mut Vec<String>,

@@ -23,7 +23,8 @@ use crate::trace::Tracer;
 use crate::visibility::Engine;
 use ambient::Sky;
 use entries::{instance_entries, loss_warnings, manifest_of};
-use layout::{BYTES_PER_SAMPLE, check_memory, unwrap_somehow};
+pub(crate) use layout::unwrap_somehow;
+use layout::{BYTES_PER_SAMPLE, check_memory};
 use leave_out::{darkness_warning, leave_out};
 use light::{Account, Light};
 use pages::{Lights, PageBaker};
@@ -136,7 +137,7 @@ pub struct Prepared {
     pub plan: EffectPlan,
     /// What a user should know.
     pub warnings: Vec<String>,
-    load_seconds: f64,
+    pub(crate) load_seconds: f64,
 }
 
 /// Reads the scene and decides what to bake.

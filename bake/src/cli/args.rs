@@ -34,6 +34,16 @@ pub enum Command {
     /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
     /// where there are several), lamp (when it sees the lamp, where the set has one), ao, ao_back, bent and sky. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
+    /// Measure what accuracy costs on a scene and this machine.
+    ///
+    /// Turns every setting that trades time or bytes for error (presets, page sizes, lanes, engines, bits, layers, rays of
+    /// sky) and writes a folder: report.html (tables, plots, and what to choose in words) and report.json (the same for
+    /// programs). Errors are minutes of sun told wrongly, mean, 99th percentile and worst, against the exact answer at points
+    /// of the surfaces; of ambient occlusion, differences of openness. What did not fit the budget is said. For times that
+    /// mean something, let nothing else run meanwhile.
+    ///
+    /// Exit codes are those of `bake`.
+    Cost(Box<CostCommandArgs>),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,6 +85,8 @@ pub struct BakeArgs {
     pub leave_out: Vec<String>,
     #[command(flatten)]
     pub sun: SunArgs,
+    #[command(flatten)]
+    pub lamp: LampArgs,
     #[command(flatten)]
     pub cost: CostArgs,
     #[command(flatten)]
@@ -121,10 +133,15 @@ pub struct SunArgs {
     /// JSON: {"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}, ...]}, with an optional "t" in
     /// each key and optional "angular_radius_deg" and "duration_min" beside "keys".
     ///
-    /// With positions it is the path of a lamp that moves through the scene, and the lamp is baked instead of the sun; see
-    /// --lamp.
+    /// For `bake`, with positions it is the path of a lamp that moves through the scene, and the lamp is baked instead of the
+    /// sun; see its --lamp.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["place", "date", "utc_offset", "window"])]
     pub path: Option<PathBuf>,
+}
+
+#[derive(Debug, ClapArgs)]
+#[command(next_help_heading = "Sun")]
+pub struct LampArgs {
     /// A file of keyed positions: a lamp that moves through the scene, beside the sun.
     ///
     /// JSON: {"radius_m": 0.05, "keys": [{"t": 0, "position": [0, 2, 0]}, {"t": 1, "position": [3, 2, 0]}]}, in metres of
@@ -252,6 +269,40 @@ pub struct OutputArgs {
 }
 
 #[derive(Debug, ClapArgs)]
+pub struct CostCommandArgs {
+    /// The scene: .gltf or .glb.
+    pub scene: PathBuf,
+    /// Folder to write the report to.
+    #[arg(short, long, value_name = "REPORT")]
+    pub output: PathBuf,
+    /// Replace an older report in that folder.
+    #[arg(long)]
+    pub force: bool,
+    /// Seconds that all of it may take, 10 to 86400.
+    ///
+    /// The most useful measurements come first, and each is predicted before it is begun: one that would not fit is left out,
+    /// with the prediction. Reading the scene and laying it out is not bounded.
+    #[arg(long, value_name = "S", default_value = "600", value_parser = parse_budget)]
+    pub budget: f64,
+    /// Leave a material out, as in `bake`. May be given several times.
+    #[arg(long, value_name = "MATERIAL")]
+    pub leave_out: Vec<String>,
+    #[command(flatten)]
+    pub sun: SunArgs,
+    /// Edge of the page on whose texels knobs are turned, 64 to 16384. Whole bakes have sizes of their own.
+    #[arg(long, value_name = "N", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(64..=16384))]
+    pub size: u32,
+    /// Threads; 0 is one per core.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub threads: usize,
+    /// Memory to plan for, as 8G or 500M; a bake that needs more is left out. [default: 4G, 8G or 16G, by preset]
+    #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
+    pub max_memory: Option<u64>,
+    #[command(flatten)]
+    pub output_manners: OutputArgs,
+}
+
+#[derive(Debug, ClapArgs)]
 pub struct InspectArgs {
     /// The set's folder.
     pub set: PathBuf,
@@ -344,6 +395,11 @@ fn parse_engine(text: &str) -> Result<EngineChoice, String> {
 fn parse_edge_seconds(text: &str) -> Result<f64, String> {
     let valid = |seconds: &f64| (0.001..=3600.0).contains(seconds);
     text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a number of seconds from 0.001 to 3600"))
+}
+
+fn parse_budget(text: &str) -> Result<f64, String> {
+    let valid = |seconds: &f64| (10.0..=86_400.0).contains(seconds);
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a number of seconds from 10 to 86400"))
 }
 
 fn parse_bytes(text: &str) -> Result<u64, String> {

@@ -1,6 +1,6 @@
 //! `sunbake bake`.
 
-use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, Preset};
+use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, Preset, SunArgs};
 use super::exit::Failure;
 use super::out::{print, print_json, warn};
 use super::summary;
@@ -68,7 +68,7 @@ fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &TerminalProgress
 }
 
 fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
-    let sun = sun(args)?;
+    let sun = sun(&args.sun)?;
     let preset = match args.preset {
         Preset::Draft => BakeSettings::draft(sun),
         Preset::Standard => BakeSettings::standard(sun),
@@ -86,7 +86,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     if let Some(flag) = times_flag(args).filter(|_| !bakes_intervals) {
         return Err(Failure::usage(format!("{flag} is about times and --only asks for none: add intervals to --only")));
     }
-    let lamp = args.sun.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
+    let lamp = args.lamp.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
     Ok(BakeSettings {
         lamp,
         leave_out: args.leave_out.clone(),
@@ -139,7 +139,7 @@ fn ambient(args: &BakeArgs, preset: Option<AmbientRequest>) -> Result<Option<Amb
 fn times_flag(args: &BakeArgs) -> Option<&'static str> {
     let cost = &args.cost;
     let flags = [
-        ("--lamp", args.sun.lamp.is_some()),
+        ("--lamp", args.lamp.lamp.is_some()),
         ("--bits", cost.bits.is_some()),
         ("--layers", cost.layers.is_some()),
         ("--lanes", cost.lanes > 1),
@@ -172,8 +172,8 @@ fn path_file(file: &Path, flag: &str) -> Result<String, Failure> {
         .map_err(|e| Failure::io(format!("cannot read the path {}: {e}; check {flag}", file.display())))
 }
 
-fn sun(args: &BakeArgs) -> Result<SunRequest, Failure> {
-    let given = &args.sun;
+/// The sun that options ask for.
+pub(super) fn sun(given: &SunArgs) -> Result<SunRequest, Failure> {
     if let Some(file) = &given.path {
         let json = path_file(file, "--path")?;
         return Ok(SunRequest::Keyed { json, north_deg: given.north });

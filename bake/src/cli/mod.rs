@@ -2,6 +2,7 @@
 
 mod args;
 mod bake;
+mod cost;
 mod exit;
 mod inspect;
 mod out;
@@ -21,6 +22,7 @@ sunbake bakes when every texel of a glTF scene sees the sun.
   sunbake bake scene.glb -o baked --place 48.2,16.4 --date 2026-06-21
   sunbake inspect baked            what a set holds, what it cost, what it lost
   sunbake texels baked --count 9   some of its texels, to check with your own ray tracer
+  sunbake cost scene.glb -o report what accuracy costs on a scene and this machine
   sunbake bake --help              every option
 ";
 
@@ -37,5 +39,6 @@ pub fn run() -> ExitCode {
         Command::Bake(args) => bake::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Texels(args) => texels::run(&args),
+        Command::Cost(args) => cost::run(&args),
     })
 }

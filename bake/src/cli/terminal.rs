@@ -12,6 +12,8 @@ use sunbake::progress::{Progress, Stage};
 pub struct TerminalProgress {
     draws: bool,
     bar: Mutex<Option<ProgressBar>>,
+    /// What stages are part of, if they are part of something.
+    task: Mutex<String>,
     signals: Signals,
 }
 
@@ -19,7 +21,7 @@ impl TerminalProgress {
     /// One that draws if stderr is a terminal and `quiet` is not asked for.
     pub fn new(quiet: bool) -> Self {
         let draws = !quiet && std::io::stderr().is_terminal();
-        Self { draws, bar: Mutex::default(), signals: Signals::listen() }
+        Self { draws, bar: Mutex::default(), task: Mutex::default(), signals: Signals::listen() }
     }
 
     /// What to exit with, if a signal stopped the bake.
@@ -37,7 +39,23 @@ impl TerminalProgress {
     }
 }
 
+impl TerminalProgress {
+    /// What to say of a stage.
+    fn message(&self, stage: Stage) -> String {
+        match self.task.lock() {
+            Ok(task) if !task.is_empty() => format!("{task}: {}", stage.verb()),
+            _ => stage.verb().into(),
+        }
+    }
+}
+
 impl Progress for TerminalProgress {
+    fn task(&self, name: &str) {
+        if let Ok(mut task) = self.task.lock() {
+            *task = name.into();
+        }
+    }
+
     fn start(&self, stage: Stage, total: u64) {
         self.clear();
         if !self.draws {
@@ -50,7 +68,7 @@ impl Progress for TerminalProgress {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        bar.set_message(stage.verb());
+        bar.set_message(self.message(stage));
         bar.enable_steady_tick(Duration::from_millis(200));
         if let Ok(mut current) = self.bar.lock() {
             *current = Some(bar);

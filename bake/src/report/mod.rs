@@ -11,6 +11,6 @@ pub mod plot;
 mod table;
 
 pub use machine::Machine;
-pub use number::{plain, with_unit};
+pub use number::{plain, whole, with_unit};
 pub use page::{escape, page};
 pub use table::{Cell, Column, Row, Table};

@@ -18,7 +18,12 @@ pub fn plain(value: f64, digits: usize) -> String {
     grouped(value.round())
 }
 
-/// A number with as many digits and its unit; of bytes and seconds, in the unit that suits.
+/// A count, its thousands apart: `12,345`.
+pub fn whole(count: u64) -> String {
+    grouped(count as f64)
+}
+
+/// A number with three digits and its unit; of bytes and seconds, in the unit that suits.
 pub fn with_unit(value: f64, unit: &str) -> String {
     match unit {
         "bytes" => bytes(value),
@@ -59,6 +64,11 @@ mod tests {
         let shown = [0.0, 0.012345, 4.5678, -12.34, 999.9, 1234.0, 1.5e6].map(|value| plain(value, 3));
         assert_eq!(shown, ["0", "0.0123", "4.57", "-12.3", "1,000", "1,234", "1,500,000"]);
         assert_eq!([1e-9, f64::NAN, f64::INFINITY].map(|value| plain(value, 2)), ["1.0e-9", "NaN", "inf"]);
+    }
+
+    #[test]
+    fn counts_are_whole() {
+        assert_eq!([0, 31, 1000, 2_504_390].map(whole), ["0", "31", "1,000", "2,504,390"]);
     }
 
     #[test]

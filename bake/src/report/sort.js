@@ -24,8 +24,8 @@ for (const table of document.querySelectorAll("table.sortable")) {
   headings.forEach((heading, column) => {
     const button = document.createElement("button");
     button.type = "button";
-    button.append(...heading.childNodes);
-    heading.append(button);
+    if (heading.firstChild) button.append(heading.firstChild);
+    heading.prepend(button);
     button.addEventListener("click", () => sort(column, heading.getAttribute("aria-sort") === "ascending"));
   });
 }

@@ -12,7 +12,7 @@ fn alone_it_says_what_it_does_in_a_few_lines() {
 #[test]
 fn help_comes_in_two_lengths() {
     let desk = Desk::new();
-    for command in ["bake", "texels"] {
+    for command in ["bake", "texels", "cost"] {
         let [short, long] = ["-h", "--help"].map(|flag| desk.run(&[command, flag]).ok().stdout);
         assert!(short.lines().count() * 3 < long.lines().count() * 2, "{command}: {short}\n{long}");
     }

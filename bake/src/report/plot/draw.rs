@@ -12,7 +12,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Free pixels around the frame: left, top, right, bottom.
-const MARGIN: [i32; 4] = [78, 64, 24, 76];
+const MARGIN: [i32; 4] = [86, 68, 26, 82];
 const INK: RGBColor = RGBColor(35, 33, 29);
 const SOFT: RGBColor = RGBColor(106, 101, 92);
 const GRID: RGBColor = RGBColor(232, 228, 219);
@@ -28,7 +28,9 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(60, 60, 60),
 ];
 /// Letters of names and of numbers beside axes, in pixels.
-const SMALL: f64 = 12.0;
+const SMALL: f64 = 12.5;
+/// What plotters divides a size by before it writes it into a file.
+const SHRINK: f64 = 1.24;
 
 /// Both scales.
 pub(super) struct Frame {
@@ -103,9 +105,9 @@ fn axes(plot: &Plot, frame: &Frame, area: &Area) -> Drawn {
         write(area, &text, (left - 8, y), SMALL, &SOFT, HPos::Right)?;
     }
     area.draw(&PathElement::new([(left, head), (left, foot), (right, foot)], SOFT))?;
-    write(area, &plot.title, (left, 18), 16.0, &INK, HPos::Left)?;
-    write(area, &plot.x.label, ((left + right) / 2, foot + 36), 13.0, &INK, HPos::Center)?;
-    let upright = ("sans-serif", 13.0).into_font().transform(FontTransform::Rotate270).color(&INK);
+    write(area, &plot.title, (left, 18), 16.5, &INK, HPos::Left)?;
+    write(area, &plot.x.label, ((left + right) / 2, foot + 36), 13.5, &INK, HPos::Center)?;
+    let upright = ("sans-serif", 13.5 * SHRINK).into_font().transform(FontTransform::Rotate270).color(&INK);
     area.draw(&Text::new(
         plot.y.label.clone(),
         (20, (foot + head) / 2),
@@ -147,12 +149,25 @@ fn names(plot: &Plot, frame: &Frame, area: &Area) -> Drawn {
         .map(|(spot, point, _)| ([f64::from(spot.at.0), f64::from(spot.at.1)], point.label.as_str()))
         .collect();
     let ([left, right], [foot, head]) = (across(), upwards());
-    let seats = labels::seats(&points, SMALL, [left + 2.0, head - 14.0, right + 20.0, foot - 2.0]);
+    let lines: Vec<_> =
+        plot.series.iter().filter(|series| series.is_joined).flat_map(|series| along(series, frame)).collect();
+    let seats = labels::seats(&points, &lines, SMALL, [left + 2.0, head - 14.0, right + 22.0, foot - 2.0]);
     for ((_, point, color), seat) in placed.iter().zip(seats) {
         let Some(Seat { left, middle }) = seat else { continue };
         write(area, &point.label, (left.round() as i32, middle.round() as i32), SMALL, &darker(*color), HPos::Left)?;
     }
     Ok(())
+}
+
+/// Pixels every few along a line.
+fn along(series: &Series, frame: &Frame) -> Vec<[f64; 2]> {
+    let spots: Vec<(i32, i32)> = series.points.iter().filter_map(|point| Some(frame.spot(point)?.at)).collect();
+    let between = |pair: &[(i32, i32)]| {
+        let [(x0, y0), (x1, y1)] = [pair[0], pair[1]].map(|(x, y)| (f64::from(x), f64::from(y)));
+        let steps = ((x1 - x0).hypot(y1 - y0) / 6.0).ceil().max(1.0) as usize;
+        (0..steps).map(move |k| k as f64 / steps as f64).map(move |s| [x0 + s * (x1 - x0), y0 + s * (y1 - y0)])
+    };
+    spots.windows(2).flat_map(between).collect()
 }
 
 /// Small letters need more contrast than dots.
@@ -173,7 +188,7 @@ fn legend(plot: &Plot, area: &Area) -> Drawn {
 }
 
 fn write(area: &Area, text: &str, at: (i32, i32), size: f64, color: &RGBColor, side: HPos) -> Drawn {
-    let style = ("sans-serif", size).into_font().color(color).pos(Pos::new(side, VPos::Center));
+    let style = ("sans-serif", size * SHRINK).into_font().color(color).pos(Pos::new(side, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style))?;
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Where the names of points are written: beside each, without covering another name or point; nowhere if there is no room.
 //!
-//! Greedy: points come in their order, and each takes the first of eight places that is free.
+//! Greedy: points come in their order, and each takes the first of eight places that is free and on no line; or else the
+//! first that is free.
 
 /// Pixels from a point's middle to its name.
 const GAP: f64 = 9.0;
@@ -22,16 +23,16 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
 }
 
-/// A seat for the name of each point, if there is one within the frame.
-pub(super) fn seats(points: &[([f64; 2], &str)], size: f64, frame: Room) -> Vec<Option<Seat>> {
+/// A seat for the name of each point, if there is one within the frame; `lines` are pixels that lines pass.
+pub(super) fn seats(points: &[([f64; 2], &str)], lines: &[[f64; 2]], size: f64, frame: Room) -> Vec<Option<Seat>> {
     let mut taken: Vec<Room> = points.iter().map(|([x, y], _)| [x - POINT, y - POINT, x + POINT, y + POINT]).collect();
     let mut seat = |&([x, y], text): &([f64; 2], &str)| {
         let (wide, half) = (width(text, size), 0.6 * size);
+        let rooms = around(x, y, wide).map(|seat| (seat, room(&seat, wide, half)));
         let is_free = |room: &Room| within(room, &frame) && !taken.iter().any(|other| overlap(room, other));
-        let (seat, room) = around(x, y, wide)
-            .into_iter()
-            .map(|seat| (seat, room(&seat, wide, half)))
-            .find(|(_, room)| is_free(room))?;
+        let is_clear = |room: &Room| !lines.iter().any(|[x, y]| overlap(room, &[*x, *y, *x, *y]));
+        let free = || rooms.into_iter().filter(|(_, room)| is_free(room));
+        let (seat, room) = free().find(|(_, room)| is_clear(room)).or_else(|| free().next())?;
         taken.push(room);
         Some(seat)
     };
@@ -80,7 +81,7 @@ mod tests {
         let places: Vec<[f64; 2]> =
             (0..60).map(|_| [300.0 * pseudo_random(&mut state), 200.0 * pseudo_random(&mut state)]).collect();
         let points: Vec<([f64; 2], &str)> = places.iter().map(|&at| (at, "rays:16")).collect();
-        let seats = seats(&points, 12.0, frame);
+        let seats = seats(&points, &[], 12.0, frame);
         let rooms: Vec<Room> = seats.iter().flatten().map(|seat| room(seat, width("rays:16", 12.0), 7.2)).collect();
         assert!(rooms.len() > 10, "{}", rooms.len());
         for (k, a) in rooms.iter().enumerate() {
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_lone_point_has_its_name() {
-        assert!(seats(&[([50.0, 50.0], "one")], 12.0, [0.0, 0.0, 100.0, 100.0])[0].is_some());
-        assert_eq!(seats(&[], 12.0, [0.0; 4]), []);
+        assert!(seats(&[([50.0, 50.0], "one")], &[], 12.0, [0.0, 0.0, 100.0, 100.0])[0].is_some());
+        assert_eq!(seats(&[], &[], 12.0, [0.0; 4]), []);
     }
 }

@@ -68,7 +68,7 @@ pub struct Point {
 }
 
 /// Size of a plot, in pixels; pages may show it smaller.
-const SIZE: [u32; 2] = [760, 440];
+const SIZE: [u32; 2] = [660, 430];
 
 /// The plot as an SVG element.
 pub fn scatter(plot: &Plot) -> String {

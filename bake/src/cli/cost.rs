@@ -1,0 +1,91 @@
+//! `sunbake cost`.
+
+use super::args::CostCommandArgs;
+use super::bake::sun;
+use super::exit::Failure;
+use super::out::{print, print_json, warn};
+use super::terminal::TerminalProgress;
+use std::fmt::Write;
+use sunbake::BakeError;
+use sunbake::cost::report::{CostReport, CostRow};
+use sunbake::cost::{self, CostError, CostSettings};
+use sunbake::report::folder::{self, REPORT_HTML, REPORT_JSON};
+use sunbake::report::{plain, with_unit};
+
+/// Measures, and writes the report.
+pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
+    let settings = CostSettings {
+        sun: sun(&args.sun)?,
+        leave_out: args.leave_out.clone(),
+        page_size_texels: args.size,
+        budget_s: args.budget,
+        threads: args.threads,
+        max_memory_bytes: args.max_memory,
+    };
+    let progress = TerminalProgress::new(args.output_manners.quiet);
+    // The folder before anything is spent: nobody should wait for a report that cannot be kept.
+    let folder = folder::begin(&args.output, args.force, REPORT_JSON).map_err(CostError::from)?;
+    let measured = cost::cost(&args.scene, &settings, folder.path(), &progress);
+    progress.clear();
+    let report = measured.map_err(|error| match error {
+        CostError::Bake(error) => Failure::of_bake(error, progress.signal_code()),
+        error => error.into(),
+    })?;
+    let files = [(REPORT_JSON, report.json().into_bytes()), (REPORT_HTML, cost::html(&report).into_bytes())];
+    folder::finish(folder, &files).map_err(CostError::from)?;
+    tell(args, &report)
+}
+
+fn tell(args: &CostCommandArgs, report: &CostReport) -> Result<(), Failure> {
+    let manners = args.output_manners;
+    if !manners.quiet {
+        warn(&report.warnings);
+    }
+    match (manners.json, manners.quiet) {
+        (true, _) => print_json(report),
+        (false, true) => Ok(()),
+        (false, false) => print(&text(args, report)),
+    }
+}
+
+/// The advice, and with -v every row.
+fn text(args: &CostCommandArgs, report: &CostReport) -> String {
+    let mut text = format!("{} -> {}\n", args.scene.display(), args.output.display());
+    for sentence in &report.advice {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "  {}", sentence.replace('`', ""));
+    }
+    let rows = || report.sweeps.iter().flat_map(|sweep| &sweep.rows);
+    let unmeasured = rows().filter(|row| !row.is_measured()).count();
+    if args.output_manners.verbose {
+        rows().for_each(|row| text += &line(row));
+    } else if unmeasured > 0 {
+        let _ =
+            writeln!(text, "  {unmeasured} of {} rows were not measured: -v or the report says why", rows().count());
+    }
+    let _ = writeln!(text, "  {} of {}", with_unit(report.spent_s, "s"), with_unit(report.budget_s, "s"));
+    text
+}
+
+fn line(row: &CostRow) -> String {
+    let seconds = row.seconds.map_or(String::new(), |seconds| format!("{} s", plain(seconds, 3)));
+    let sun = row.sun_min.map_or(String::new(), |error| format!("{} min of sun", plain(error.mean, 3)));
+    let open = row.open.map_or(String::new(), |error| format!("{} of openness", plain(error.mean, 3)));
+    let note = row.note.as_deref().unwrap_or_default();
+    format!("  {:<18}{seconds:>10}  {sun:<20}{open:<20}{note}\n", row.name).trim_end().to_owned() + "\n"
+}
+
+impl From<CostError> for Failure {
+    fn from(error: CostError) -> Self {
+        let code = match error {
+            CostError::Bake(error) => return error.into(),
+            CostError::Read(error) => return error.into(),
+            CostError::Load(error) => return BakeError::Load(error).into(),
+            CostError::Folder(_) => 2,
+            CostError::NoSun(_) => 1,
+            CostError::NoSurface => 3,
+            CostError::Moved { .. } => 4,
+        };
+        Self { code, error: error.into() }
+    }
+}

@@ -1,0 +1,158 @@
+//! A bake of nothing but the texels that are read: what a set would show at points, without baking the rest of it.
+//!
+//! The scene is laid out as for the bake. Of the four texels around every point, each that a triangle touches is asked, others
+//! take the value of the gutter's source. Times are encoded with the bits, layers and lanes of the bake, and compared as if
+//! they had been read from its files: sun comes out the same to the last bit (a test compares the two). Openness lacks the
+//! healing of cuts and what buried texels show, which need the whole page. Seconds are a prediction, and of bytes only those
+//! on the GPU are known, from the layers that these texels need.
+
+use super::budget::Budget;
+use super::played::{self, Blend, Errors, Shown};
+use super::subject::Subject;
+use super::truth::{self, Truth};
+use crate::ambient::AmbientPoint;
+use crate::atlas::{self, Atlas, GutterTexel, PageSamples, Sample, SurfacePoint};
+use crate::bake::unwrap_somehow;
+use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_open};
+use crate::progress::Progress;
+use crate::settings::{AmbientRequest, BakeSettings};
+use crate::{BakeError, progress::Stage};
+use std::collections::{HashMap, HashSet};
+
+/// What was found.
+pub(super) struct Around {
+    pub errors: Errors,
+    pub gpu_bytes: u64,
+    /// Texels of all pages that stand for a point.
+    pub texels: u64,
+}
+
+/// Asks the texels around the points. None if it was stopped.
+pub(super) fn around(
+    subject: &Subject,
+    truth: &Truth,
+    settings: &BakeSettings,
+    budget: &Budget,
+) -> Result<Option<Around>, BakeError> {
+    let (mut warnings, scene) = (Vec::new(), subject.scene());
+    let laid_out = subject.on_threads(|| unwrap_somehow(scene, settings, &mut warnings, budget));
+    let (atlas, settings) = match laid_out {
+        Ok(laid_out) => laid_out,
+        Err(BakeError::Cancelled) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    budget.start(Stage::Encode, 0);
+    let read = subject.on_threads(|| Read::new(subject, truth, &atlas, settings.padding_texels));
+    Ok(read.answer(subject, truth, &settings, atlas.texel_count(), budget))
+}
+
+/// The texels that are read, and by which point.
+struct Read {
+    /// Texels that are asked, each once.
+    samples: Vec<Sample>,
+    /// For each point, places in `samples`, and one beyond them for texels that nothing touches.
+    blends: Vec<Blend>,
+    texels: u64,
+}
+
+impl Read {
+    fn new(subject: &Subject, truth: &Truth, atlas: &Atlas, padding: u32) -> Self {
+        let (scene, geometry) = (subject.scene(), &subject.geometry);
+        let of_pages: Vec<(usize, Blend)> =
+            truth.places.iter().map(|place| played::blend(place, scene, geometry, atlas)).collect();
+        let mut read = Self { samples: Vec::new(), blends: vec![Blend::default(); of_pages.len()], texels: 0 };
+        // Texels that nothing touches, marked until it is known how many there are that something does.
+        const NOTHING: usize = usize::MAX;
+        for (page, &size) in atlas.pages.iter().enumerate() {
+            let samples = atlas::sample_page(scene, geometry, atlas, page as u32);
+            read.texels += samples.samples.len() as u64;
+            let on_page = of_pages.iter().enumerate().filter(|(_, (of, _))| *of == page);
+            let texels = on_page.clone().flat_map(|(_, (_, blend))| blend.iter().map(|(texel, _)| *texel));
+            let found = read.ask(&texels.collect(), &samples, &atlas::gutter(size, &samples, padding));
+            for (point, (_, blend)) in on_page {
+                read.blends[point] = blend.map(|(texel, weight)| (*found.get(&texel).unwrap_or(&NOTHING), weight));
+            }
+        }
+        let beyond = read.samples.len();
+        read.blends.iter_mut().flatten().for_each(|(place, _)| *place = (*place).min(beyond));
+        read
+    }
+
+    /// Adds those of a page's samples that stand for these texels, and gives back where each texel's is.
+    fn ask(&mut self, texels: &HashSet<usize>, page: &PageSamples, gutter: &[GutterTexel]) -> HashMap<usize, usize> {
+        let own = page.samples.iter().enumerate().map(|(k, sample)| (sample.texel as usize, k));
+        let copied = gutter.iter().map(|copy| (copy.texel as usize, copy.sample as usize));
+        let mut place_of: HashMap<usize, usize> = HashMap::new();
+        let mut found = HashMap::new();
+        for (texel, sample) in own.chain(copied).filter(|(texel, _)| texels.contains(texel)) {
+            let place = *place_of.entry(sample).or_insert_with(|| {
+                self.samples.push(page.samples[sample]);
+                self.samples.len() - 1
+            });
+            found.insert(texel, place);
+        }
+        found
+    }
+
+    fn answer(
+        self,
+        subject: &Subject,
+        truth: &Truth,
+        settings: &BakeSettings,
+        page_texels: u64,
+        budget: &Budget,
+    ) -> Option<Around> {
+        let lanes = self.sun(subject, settings, budget)?;
+        let ambient = match &settings.ambient {
+            Some(request) => Some(self.sky(subject, request, budget)?),
+            None => None,
+        };
+        // A page one texel high, with one texel more that nothing touches.
+        let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient };
+        let gpu_bytes = played::gpu_bytes(&page, settings.bits) / u64::from(page.width) * page_texels;
+        let shown = Shown { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(subject.path()) };
+        let blends: Vec<(usize, Blend)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
+        let errors = subject.on_threads(|| shown.errors(truth, &blends));
+        Some(Around { errors, gpu_bytes, texels: self.texels })
+    }
+
+    fn sun(&self, subject: &Subject, settings: &BakeSettings, budget: &Budget) -> Option<Vec<LaneMaps>> {
+        let (lanes, paths) = subject.lanes(settings.lane_count);
+        let engine = settings.engine.engine(&subject.tracer, &paths, settings.edge_seconds);
+        let points: Vec<SurfacePoint> = self.samples.iter().map(|sample| subject.point(sample)).collect();
+        let (answers, _) = subject.find_lit(engine.as_ref(), &points, budget)?;
+        let of_lane = |(k, &lane)| {
+            let mut encoder = PageEncoder::new(points.len() + 1, settings.bits, settings.layer_cap);
+            for (texel, lit) in answers.iter().skip(k).step_by(lanes.len()).enumerate() {
+                encoder.set(texel, lit);
+            }
+            LaneMaps { lane, layers: encoder.finish() }
+        };
+        Some(lanes.iter().enumerate().map(of_lane).collect())
+    }
+
+    fn sky(&self, subject: &Subject, request: &AmbientRequest, budget: &Budget) -> Option<AmbientMaps> {
+        let point = |sample: &Sample| AmbientPoint {
+            surface: subject.point(sample),
+            shading_normal: subject.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
+        };
+        let points: Vec<AmbientPoint> = self.samples.iter().map(point).collect();
+        let engine = subject.sky(request.estimate.rays, request.estimate.seed);
+        let (runs, _) = subject.find_open(&engine, &points, budget)?;
+        let sides: Vec<[f32; 2]> = runs.iter().flat_map(truth::sides).collect();
+        let has_backs = points.iter().any(|point| point.surface.is_double_sided);
+        let side = |k: usize| AmbientSide {
+            open: sides.iter().map(|side| code(side[k], request.bits)).chain([0]).collect(),
+            ..AmbientSide::default()
+        };
+        Some(AmbientMaps { front: side(0), back: has_backs.then(|| side(1)) })
+    }
+}
+
+/// The code that is read of an openness stored with these bits.
+fn code(open: f32, bits: Bits) -> u16 {
+    match bits {
+        Bits::Sixteen => encode_open(open),
+        Bits::Eight => (open.clamp(0.0, 1.0) * 255.0).round() as u16 * 257,
+    }
+}

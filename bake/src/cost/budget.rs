@@ -1,0 +1,81 @@
+//! The time that measuring may take.
+
+use crate::progress::{Progress, Stage};
+use crate::report::with_unit;
+use std::time::Instant;
+
+/// How much longer than the budget a run that has begun may last, as a share of it.
+const GRACE: f64 = 0.1;
+
+/// Time on the clock, and the ear that hears who wants to stop. As a [`Progress`], it passes on what it is told, and stops
+/// what outlasts the budget.
+pub(super) struct Budget<'a> {
+    started: Instant,
+    seconds: f64,
+    progress: &'a dyn Progress,
+}
+
+impl<'a> Budget<'a> {
+    pub fn new(seconds: f64, progress: &'a dyn Progress) -> Self {
+        Self { started: Instant::now(), seconds, progress }
+    }
+
+    /// Seconds that are allowed.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    pub fn spent_s(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Why a run that may take so many seconds is not begun, if it should not be.
+    pub fn refusal(&self, predicted_s: f64) -> Option<String> {
+        let left_s = (self.seconds - self.spent_s()).max(0.0);
+        (predicted_s > left_s).then(|| {
+            format!(
+                "not run: about {} predicted, {} of the budget left",
+                with_unit(predicted_s, "s"),
+                with_unit(left_s, "s")
+            )
+        })
+    }
+
+    /// Whether the user wants to stop.
+    pub fn is_interrupted(&self) -> bool {
+        self.progress.is_cancelled()
+    }
+}
+
+impl Progress for Budget<'_> {
+    fn task(&self, name: &str) {
+        self.progress.task(name);
+    }
+
+    fn start(&self, stage: Stage, total: u64) {
+        self.progress.start(stage, total);
+    }
+
+    fn advance(&self, by: u64) {
+        self.progress.advance(by);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.is_interrupted() || self.spent_s() > (1.0 + GRACE) * self.seconds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::Silent;
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_both_numbers() {
+        let budget = Budget::new(100.0, &Silent);
+        assert_eq!(budget.refusal(50.0), None);
+        let words = budget.refusal(500.0).unwrap();
+        assert!(words.contains("8.33 min predicted") && words.contains("of the budget left"), "{words}");
+        assert!(!budget.is_cancelled() && Budget::new(-1.0, &Silent).is_cancelled());
+    }
+}

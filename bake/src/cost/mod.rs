@@ -1,0 +1,171 @@
+//! What accuracy costs on a scene and a machine: every setting that trades time or bytes for error, measured.
+//!
+//! **Two kinds of measurement.** *Whole bakes* (presets, sizes of the page, lanes) are real calls of [`crate::bake`] into a
+//! folder that is removed again; their error is what somebody sees who stands at a point of a surface, set against what is
+//! true there (`truth.rs`, `played.rs`): texels, codes, layers, lanes, filter and all. *Knobs* (engines, bits, layers, lanes,
+//! rays of sky) are turned one at a time on a sample of the page's texels, in runs of neighbours, since engines live off
+//! neighbours; their time is scaled to the whole page, and their error is set against the same texel's own best answer, so
+//! that it is the knob's and nothing else's (`knobs.rs`).
+//!
+//! **The error of sun** at a place is how many minutes of the day are told wrongly there, weighed by how much of the disc is:
+//! `duration * integral of |V - V_reference| dt`. Of hard times that is the symmetric difference of two lists. **The error of
+//! sky** is the difference of openness.
+//!
+//! **The budget** is time on the clock. Runs are in the order of their use, each is predicted from those before, and one that
+//! would not fit is not begun; one that outlasts the budget by a tenth all the same is stopped. A bake too long to be made is
+//! sampled: only those texels are baked that the points read, which gives its error, and its time is predicted (`around.rs`).
+//! What was not run is said, with the prediction. So a small budget gives a short report, not a wrong one.
+//!
+//! Read on: `jobs.rs` (what is run, and in which order), `subject.rs` (the scene), `difference.rs` (errors), `knee.rs`,
+//! `advice.rs` (words), `html.rs` (the page), `report.rs` (the file).
+
+mod advice;
+mod around;
+mod budget;
+mod difference;
+mod html;
+mod jobs;
+mod knee;
+mod knobs;
+mod load;
+mod played;
+pub mod report;
+mod subject;
+#[cfg(test)]
+mod tests;
+mod truth;
+
+pub use html::html;
+pub use report::CostReport;
+
+use crate::BakeError;
+use crate::disk::read::ReadError;
+use crate::progress::Progress;
+use crate::report::Machine;
+use crate::report::folder::FolderError;
+use crate::scene::LoadError;
+use crate::settings::{BakeSettings, SunRequest};
+use budget::Budget;
+use report::{SceneEntry, SunEntry};
+use std::path::Path;
+use subject::Subject;
+
+/// What is to be measured, and how long that may take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CostSettings {
+    /// Which sun.
+    pub sun: SunRequest,
+    /// Names of materials that are left out, see [`BakeSettings::leave_out`].
+    pub leave_out: Vec<String>,
+    /// Edge of the page on which knobs are turned, 64 to 16384, usually that of the standard preset.
+    pub page_size_texels: u32,
+    /// Seconds that all of it may take, 10 to 86400, usually 600. More seconds, more runs.
+    pub budget_s: f64,
+    /// Threads, 0 for one a core.
+    pub threads: usize,
+    /// Memory that a bake may plan for; none: what its preset allows.
+    pub max_memory_bytes: Option<u64>,
+}
+
+/// Why costs were not measured. Nothing was left behind.
+#[derive(Debug, thiserror::Error)]
+pub enum CostError {
+    /// The scene, the sun or the layout is not to be had.
+    #[error(transparent)]
+    Bake(#[from] BakeError),
+    /// A set that was just written cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The scene of a set that was just written cannot be read.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The report cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// There is no sun to measure by.
+    #[error("{0}: cost measures by the sun, so give another --date, --place or --path")]
+    NoSun(String),
+    /// There is nothing to measure.
+    #[error("the scene has no surface to bake, so there is nothing to measure")]
+    NoSurface,
+    /// A set's scene is not the scene that was baked.
+    #[error("triangle {triangle} of the baked scene lies {apart_m} m from where it was: this is a defect of sunbake")]
+    Moved {
+        /// Its index.
+        triangle: u32,
+        /// How far it moved.
+        apart_m: f64,
+    },
+}
+
+impl CostSettings {
+    /// A preset over this sun, with these limits.
+    fn preset(&self, of: fn(SunRequest) -> BakeSettings) -> BakeSettings {
+        let preset = of(self.sun.clone());
+        BakeSettings {
+            leave_out: self.leave_out.clone(),
+            threads: self.threads,
+            max_memory_bytes: self.max_memory_bytes.unwrap_or(preset.max_memory_bytes),
+            ..preset
+        }
+    }
+}
+
+/// Measures what accuracy costs on `scene_file`. Bakes go into `work_folder`, one at a time, and are removed again.
+pub fn cost(
+    scene_file: &Path,
+    settings: &CostSettings,
+    work_folder: &Path,
+    progress: &dyn Progress,
+) -> Result<CostReport, CostError> {
+    let budget = Budget::new(settings.budget_s, progress);
+    let subject = Subject::new(scene_file, settings, &budget)?;
+    let mut jobs = jobs::Jobs::new(&subject, settings, work_folder, &budget)?;
+    jobs.run_all()?;
+    let (sweeps, reference) = jobs.finish();
+    let mut report = CostReport {
+        format: report::FORMAT.into(),
+        version: report::VERSION,
+        generator: concat!("sunbake ", env!("CARGO_PKG_VERSION")).into(),
+        scene: SceneEntry {
+            file: subject.scene().source.file_name.clone(),
+            sha256: subject.scene().source.sha256.clone(),
+            triangles: subject.scene().triangle_count() as u64,
+        },
+        sun: sun_entry(&subject),
+        machine: Machine::here(settings.threads),
+        budget_s: settings.budget_s,
+        spent_s: budget.spent_s(),
+        cores_share: subject.cores_share(),
+        reference,
+        sweeps,
+        advice: Vec::new(),
+        warnings: subject.warnings().to_vec(),
+    };
+    report.warnings.extend(crowded(&report));
+    report.advice = advice::words(&report);
+    Ok(report)
+}
+
+/// Share of the cores' time below which something else must have run.
+const CROWDED: f64 = 0.85;
+
+/// A word where the machine was not ours alone.
+fn crowded(report: &CostReport) -> Option<String> {
+    let share = report.cores_share.filter(|share| *share < CROWDED)?;
+    Some(format!(
+        "this process got {:.0} % of the time of its threads, so something else ran: seconds are longer than on an idle machine, \
+         and compare with one another only roughly",
+        100.0 * share
+    ))
+}
+
+fn sun_entry(subject: &Subject) -> SunEntry {
+    let path = subject.path();
+    let local = [0.0, 1.0].map(|t| path.local_text(t));
+    let local = match local {
+        [Some(start), Some(end)] => Some([start, end]),
+        _ => None,
+    };
+    SunEntry { local, duration_min: path.duration_min, angular_radius_deg: path.angular_radius_rad.to_degrees() }
+}

@@ -1,0 +1,164 @@
+//! What a set shows at points, read from its files as a runtime reads them: four texels evaluated, then blended, and no more
+//! than the share of the disc that stands before the surface's plane. The runtime's `playback.rs` is the twin.
+
+use super::CostError;
+use super::difference;
+use super::truth::{Place, Truth};
+use crate::atlas::Atlas;
+use crate::disk::read::BakedSet;
+use crate::maps::{Bits, LaneMaps, PageMaps, decode_open, soft_visibility};
+use crate::scene::{self, Geometry, LoadLimits, Scene};
+use crate::sun::SunPath;
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// How far a triangle may lie from where it was, as a share of the scene's half size.
+const MOST_MOVED: f64 = 1e-4;
+
+/// How wrong a set is at each point, in path time and in openness.
+pub(super) struct Errors {
+    pub sun_t: Vec<f64>,
+    /// None where the set has no ambient occlusion.
+    pub open: Option<Vec<f64>>,
+}
+
+/// Four texels of a page and how much each counts.
+pub(super) type Blend = [(usize, f32); 4];
+
+/// Compares a set with what is true; `of` is the scene that the points are of.
+pub(super) fn errors(set: &BakedSet, truth: &Truth, of: &Scene) -> Result<Errors, CostError> {
+    let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
+    let geometry = Geometry::new(&scene);
+    let atlas = Atlas::of_set(&scene, &set.manifest);
+    check(truth, of, &scene, &geometry)?;
+    let blends: Vec<(usize, Blend)> =
+        truth.places.iter().map(|place| blend(place, &scene, &geometry, &atlas)).collect();
+    let shown = Shown { pages: &set.pages, bits: set.bits, path: set.path.as_ref() };
+    Ok(shown.errors(truth, &blends))
+}
+
+/// Maps as they are shown.
+pub(super) struct Shown<'a> {
+    pub pages: &'a [PageMaps],
+    pub bits: Bits,
+    /// The sun's, if it has one.
+    pub path: Option<&'a SunPath>,
+}
+
+impl Shown<'_> {
+    /// How wrong they are at points, of which each reads these texels of this page.
+    pub fn errors(&self, truth: &Truth, blends: &[(usize, Blend)]) -> Errors {
+        let placed = || truth.places.par_iter().zip(blends);
+        let sun_t = placed().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
+            let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend));
+            difference::apart_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
+        });
+        let sun_t = sun_t.collect();
+        let open = placed().zip(&truth.open).map(|((place, (page, blend)), true_open)| {
+            Some(f64::from((shown_open(&self.pages[*page], place, blend)? - true_open).abs()))
+        });
+        Errors { sun_t, open: open.collect() }
+    }
+
+    /// Share of the disc that is shown at the point's moments.
+    fn sun(&self, page: &PageMaps, path: &SunPath, place: &Place, blend: &Blend) -> Vec<f32> {
+        let discs_per_radian = 0.5 / path.angular_radius_rad.max(1e-9);
+        let face = place.face();
+        let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
+        let at = |t: f64| {
+            let share = (0.5 + face.dot(path.direction(t)) * discs_per_radian).clamp(0.0, 1.0) as f32;
+            if share <= 0.0 {
+                return 0.0;
+            }
+            let width_t = path.width_t(t) as f32;
+            let of_texel = |texel: usize| -> f32 {
+                let of_lane = |(lane, chord): (&LaneMaps, &f32)| {
+                    lane.lane.weight as f32 * soft_visibility(&lane.layers, texel, self.bits, t as f32, width_t * chord)
+                };
+                page.lanes.iter().zip(&chords).map(of_lane).sum()
+            };
+            share.min(blend.iter().map(|&(texel, weight)| weight * of_texel(texel)).sum())
+        };
+        difference::moments(place.start).map(at).collect()
+    }
+}
+
+/// Bytes of a page's maps as a GPU holds them.
+pub(super) fn gpu_bytes(page: &PageMaps, bits: Bits) -> u64 {
+    let layers: usize = page.lanes.iter().map(|lane| lane.layers.len()).sum();
+    let sides = page.ambient.as_ref().map_or(0, |ambient| if ambient.back.is_some() { 2 } else { 1 });
+    u64::from(page.width) * u64::from(page.height) * (layers as u64 * u64::from(bits.count()) + 2 * sides)
+}
+
+/// The set's scene is that of the points: triangle by triangle the same.
+fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Result<(), CostError> {
+    let most_m = MOST_MOVED * of.half_extent_m.length();
+    for place in &truth.places {
+        let triangle = place.surface.triangle;
+        let is_there = (triangle as usize) < geometry.triangles.len();
+        let apart_m = if is_there {
+            let found = geometry.point(triangle as usize, place.barycentric) + scene.centre_m;
+            found.distance(place.surface.position_m + of.centre_m)
+        } else {
+            f64::INFINITY
+        };
+        if !(apart_m <= most_m) {
+            return Err(CostError::Moved { triangle, apart_m });
+        }
+    }
+    Ok(())
+}
+
+/// The page of a point, and the texels around it.
+pub(super) fn blend(place: &Place, scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> (usize, Blend) {
+    let surface = geometry.surface(place.surface.triangle as usize);
+    let page = atlas.placements[surface.instance].page as usize;
+    let size = atlas.pages[page];
+    let layout = &atlas.layouts[scene.instances[surface.instance].mesh];
+    let corner = |k: usize| {
+        let vertex = layout.indices[3 * surface.mesh_triangle + k] as usize;
+        atlas.texel(surface.instance, layout.uvs[vertex], size)
+    };
+    let [u, v] = place.barycentric;
+    let at = corner(0) * (1.0 - u - v) + corner(1) * u + corner(2) * v;
+    (page, blend_at(at, size.width, size.height))
+}
+
+/// The texels around a place on the page, given in texels.
+fn blend_at(at: DVec2, width: u32, height: u32) -> Blend {
+    let base = (at - 0.5).floor();
+    let weight = (at - 0.5 - base).as_vec2();
+    let index = |dx: f64, dy: f64| {
+        let x = (base.x + dx).clamp(0.0, f64::from(width - 1)) as usize;
+        let y = (base.y + dy).clamp(0.0, f64::from(height - 1)) as usize;
+        y * width as usize + x
+    };
+    [
+        (index(0.0, 0.0), (1.0 - weight.x) * (1.0 - weight.y)),
+        (index(1.0, 0.0), weight.x * (1.0 - weight.y)),
+        (index(0.0, 1.0), (1.0 - weight.x) * weight.y),
+        (index(1.0, 1.0), weight.x * weight.y),
+    ]
+}
+
+/// Openness that the set shows.
+fn shown_open(page: &PageMaps, place: &Place, blend: &Blend) -> Option<f32> {
+    let ambient = page.ambient.as_ref()?;
+    let side = ambient.back.as_ref().filter(|_| place.is_back).unwrap_or(&ambient.front);
+    Some(blend.iter().map(|&(texel, weight)| weight * decode_open(side.open[texel])).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blend_is_that_of_a_filter() {
+        assert_eq!(blend_at(DVec2::new(1.5, 0.5), 4, 4)[0], (1, 1.0));
+        let [a, b, c, d] = blend_at(DVec2::new(2.0, 1.25), 4, 4);
+        assert_eq!([a.0, b.0, c.0, d.0], [1, 2, 5, 6]);
+        assert_eq!([a.1, b.1, c.1, d.1], [0.125, 0.125, 0.375, 0.375]);
+        let at_corner = blend_at(DVec2::new(0.0, 0.0), 4, 4);
+        assert!(at_corner.iter().all(|(texel, _)| *texel == 0));
+    }
+}

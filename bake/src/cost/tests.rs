@@ -1,0 +1,148 @@
+//! Whether errors are what they say: known answers first, then a bake against the same bake by another way.
+
+use super::budget::Budget;
+use super::difference::of_disc;
+use super::played::{self, Blend, Shown};
+use super::subject::Subject;
+use super::truth::{Place, Truth};
+use super::{CostSettings, around::around};
+use crate::atlas::{self, AtlasSettings, SurfacePoint};
+use crate::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
+use crate::progress::Silent;
+use crate::scene::Scene;
+use crate::settings::{BakeSettings, SunRequest};
+use crate::sun::{DayOutcome, DayRequest, SunPath, day};
+use crate::testing::{SceneBuilder, block, floor};
+use crate::visibility::Intervals;
+use crate::{bake, disk, glb};
+use glam::{DVec3, Vec2, Vec3};
+use std::path::{Path, PathBuf};
+
+fn summer() -> DayRequest {
+    DayRequest::new(Some([40.0, 0.0]), Some("2026-06-21".parse().unwrap())).unwrap()
+}
+
+fn summer_path() -> SunPath {
+    match day(&summer()).unwrap() {
+        DayOutcome::Path(path) => path,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A page of four texels with these times, and what is true at a point in their midst.
+fn shown_minutes(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
+    let path = summer_path();
+    let surface = SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0 };
+    let place = Place { surface, barycentric: [0.3; 2], is_back: false, start: 0.37, shading_normal: DVec3::Y };
+    let lit = Intervals::from_unsorted(truth.to_vec());
+    let sun = of_disc(&[lit], &[Lane::CENTRE], &path, place.start);
+    let truth = Truth { places: vec![place], sun: vec![sun], open: vec![0.0], buried: 0 };
+    let mut encoder = PageEncoder::new(4, Bits::Sixteen, 4);
+    for (texel, lit) in texels.iter().enumerate() {
+        encoder.set(texel, &Intervals::from_unsorted(lit.to_vec()));
+    }
+    let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
+    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None };
+    let blend: Blend = [0, 1, 2, 3].map(|texel| (texel, 0.25));
+    let shown = Shown { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
+    shown.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min
+}
+
+#[test]
+fn what_is_true_has_no_error() {
+    let day: &[[f64; 2]] = &[[0.2, 0.4], [0.5, 0.8]];
+    let minutes = shown_minutes([day; 4], day);
+    // Codes are 0.8 seconds apart.
+    assert!(minutes < 0.03, "{minutes}");
+}
+
+#[test]
+fn times_that_are_late_by_so_many_minutes_read_as_so_many() {
+    let duration_min = summer_path().duration_min;
+    for late_min in [1.0, 7.0, 30.0] {
+        let late = late_min / duration_min;
+        let day: &[[f64; 2]] = &[[0.2, 0.6]];
+        let evening: &[[f64; 2]] = &[[0.2, 0.6 + late]];
+        let both: &[[f64; 2]] = &[[0.2 + late, 0.6 + late]];
+        // One moment is 0.9 minutes, of which a ramp as wide as the sun leaves little.
+        let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.1, "{found} for {expected}");
+        close(shown_minutes([evening; 4], day), late_min);
+        close(shown_minutes([both; 4], day), 2.0 * late_min);
+    }
+}
+
+#[test]
+fn one_wrong_texel_is_seen_by_its_share() {
+    let day: &[[f64; 2]] = &[[0.25, 0.75]];
+    let expected = 0.25 * 0.5 * summer_path().duration_min;
+    for wrong in 0..4 {
+        let mut texels = [day; 4];
+        texels[wrong] = &[];
+        let minutes = shown_minutes(texels, day);
+        assert!((minutes - expected).abs() < 0.5, "{minutes} for {expected}");
+    }
+}
+
+/// The scene as a file.
+fn file(scene: &Scene, folder: &Path) -> PathBuf {
+    let settings = AtlasSettings { page_size_texels: 64, ..AtlasSettings::default() };
+    let atlas = atlas::build(scene, &settings, &|_| true).unwrap();
+    let path = folder.join("scene.glb");
+    std::fs::write(&path, glb::write_glb(scene, &atlas.layouts, None).unwrap().bytes).unwrap();
+    path
+}
+
+fn settings() -> CostSettings {
+    CostSettings {
+        sun: SunRequest::Day(summer()),
+        leave_out: Vec::new(),
+        page_size_texels: 64,
+        budget_s: 1000.0,
+        threads: 1,
+        max_memory_bytes: None,
+    }
+}
+
+/// Errors of a small bake at 300 points, from its files and from the texels around the points.
+fn both_ways(scene: &Scene, lane_count: usize) -> [played::Errors; 2] {
+    let desk = tempfile::tempdir().unwrap();
+    let file = file(scene, desk.path());
+    let settings = settings();
+    let budget = Budget::new(settings.budget_s, &Silent);
+    let subject = Subject::new(&file, &settings, &budget).unwrap();
+    let truth = Truth::find(&subject, 300, &budget).unwrap();
+    let standard = settings.preset(BakeSettings::standard);
+    let asked = BakeSettings { page_size_texels: 64, lane_count, ..standard };
+    bake(&file, &desk.path().join("set"), false, &asked, &Silent).unwrap();
+    let set = disk::read::read(&desk.path().join("set")).unwrap();
+    let whole = played::errors(&set, &truth, subject.scene()).unwrap();
+    let sampled = around(&subject, &truth, &asked, &budget).unwrap().unwrap();
+    assert_eq!(sampled.texels, set.manifest.stats.texels);
+    [whole, sampled.errors]
+}
+
+#[test]
+fn an_open_floor_is_told_rightly() {
+    let scene = SceneBuilder::new().soup(&floor(Vec2::ZERO, Vec2::splat(10.0), 0.0)).build();
+    let [whole, _] = both_ways(&scene, 1);
+    let duration_min = summer_path().duration_min;
+    let worst = whole.sun_t.iter().fold(0.0, |worst: f64, t| worst.max(t * duration_min));
+    // What is left is sunrise and sunset, which one lane and a plane's share of the disc tell otherwise than seventeen lanes.
+    assert!(whole.sun_t.len() == 300 && worst < 1.5, "{worst}");
+    assert!(whole.open.unwrap().iter().all(|&error| error < 1e-4));
+}
+
+#[test]
+fn a_bake_of_nothing_but_the_texels_around_points_shows_what_the_whole_bake_shows() {
+    let mut triangles = floor(Vec2::ZERO, Vec2::splat(10.0), 0.0);
+    triangles.extend(block(Vec3::new(3.0, 0.5, 3.0), Vec3::new(4.0, 4.0, 7.0)));
+    let scene = SceneBuilder::new().soup(&triangles).build();
+    for lane_count in [1, 3] {
+        let [whole, sampled] = both_ways(&scene, lane_count);
+        assert_eq!(whole.sun_t, sampled.sun_t);
+        let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
+        let [a, b] = [whole.open.unwrap(), sampled.open.unwrap()].map(|open| mean(&open));
+        assert!((a - b).abs() < 0.004, "{a} {b}");
+        assert!(mean(&whole.sun_t) > 1e-4, "a block casts a shadow that such texels cannot show");
+    }
+}
