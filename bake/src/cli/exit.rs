@@ -82,12 +82,18 @@ pub fn usage(error: &clap::Error) -> ExitCode {
             let text = error.to_string();
             let first = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
             let line: Vec<&str> = first.split_whitespace().collect();
-            tell(&format!("sunbake: {}; `sunbake bake --help` tells more", line.join(" ")));
+            tell(&format!("sunbake: {}; `sunbake {} --help` tells more", line.join(" "), command()));
         }
         // If even this cannot be printed there is nobody to tell.
         _ => drop(error.print()),
     }
     ExitCode::from(u8::from(error.use_stderr()))
+}
+
+/// The command that was given, or the one that most people want.
+fn command() -> String {
+    let given = std::env::args().nth(1).filter(|name| ["inspect", "texels", "cost"].contains(&name.as_str()));
+    given.unwrap_or_else(|| "bake".into())
 }
 
 /// Runs a command and turns its end into an exit code. A panic is a defect of ours, and says so.

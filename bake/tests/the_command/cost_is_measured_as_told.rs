@@ -79,7 +79,8 @@ fn the_page_needs_no_network_and_holds_every_row() {
 #[test]
 fn what_cannot_be_measured_is_said_in_one_line() {
     let desk = Desk::new();
-    cost(&desk, &["--budget=5"]).fails("budget", 1, &["10 to 86400"]);
+    let hasty = desk.run(&["cost", "floor.glb", "-o", "out/report", "--budget=5"]);
+    hasty.fails("budget", 1, &["10 to 86400", "sunbake cost --help"]);
     let lamp = r#"{"keys": [{"t": 0, "position": [0, 2, 0]}, {"t": 1, "position": [3, 2, 0]}]}"#;
     desk.write("lamp.json", lamp.as_bytes());
     cost(&desk, &["--path=lamp.json"]).fails("a lamp", 1, &["--path is a lamp's"]);

@@ -230,5 +230,7 @@ fn finished(svg: &str, plot: &Plot, frame: &Frame) -> String {
     let start = body.find("<svg").unwrap_or(0);
     let named = format!("<svg role=\"img\" aria-label=\"{}\" ", escape(&plot.title));
     let text = body[start..].replacen("<svg ", &named, 1);
+    // Within HTML the name space goes without saying, and nothing then looks like an address.
+    let text = text.replace(" xmlns=\"http://www.w3.org/2000/svg\"", "");
     text.replace("font-family=\"sans-serif\"", "font-family=\"system-ui, sans-serif\"") + &tips + "</svg>\n"
 }
