@@ -34,6 +34,7 @@ pub(super) const RAYS: u32 = 16_384;
 const SHORT_S: f64 = 0.4;
 
 /// What turning a knob gave.
+#[derive(Clone, Copy)]
 pub(super) struct Turned {
     /// Scaled to the page.
     pub seconds: f64,

@@ -102,7 +102,7 @@ fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Resul
         } else {
             f64::INFINITY
         };
-        if !(apart_m <= most_m) {
+        if apart_m.is_nan() || apart_m > most_m {
             return Err(CostError::Moved { triangle, apart_m });
         }
     }
