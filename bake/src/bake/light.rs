@@ -27,6 +27,8 @@ pub(super) struct Account {
     pub intervals: u64,
     pub dark_texels: u64,
     pub most_intervals: u64,
+    /// Texels that one layer does not hold, along some lane.
+    pub crowded_texels: u64,
     pub loss: LossTally,
 }
 
@@ -47,14 +49,16 @@ impl LaneEncoders {
         account: &mut Account,
     ) -> EncodeLoss {
         let mut loss = EncodeLoss::default();
-        let mut found = 0;
+        let (mut found, mut most) = (0, 0);
         for ((lane, encoder), lit) in self.0.iter_mut().zip(answers) {
             let count = lit.as_slice().len() as u64;
             found += count;
-            account.most_intervals = account.most_intervals.max(count);
+            most = most.max(count);
             loss.add_lane(&encoder.set(texel, &lit), lane.weight);
         }
         account.intervals += found;
+        account.most_intervals = account.most_intervals.max(most);
+        account.crowded_texels += u64::from(most > 4);
         account.dark_texels += u64::from(found == 0);
         loss
     }
@@ -72,7 +76,7 @@ impl LaneEncoders {
 impl Account {
     /// What the manifest says of a lamp.
     pub fn of_lamp(self, light: &Light) -> (LampStats, ErrorEntry) {
-        let Self { work, intervals, dark_texels, most_intervals, loss } = self;
+        let Self { work, intervals, dark_texels, most_intervals, loss, .. } = self;
         let stats = LampStats { engine: light.engine.name(), rays: work.rays, intervals, dark_texels, most_intervals };
         (stats, loss.finish(light.duration_min))
     }

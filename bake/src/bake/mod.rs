@@ -9,12 +9,12 @@ mod pages;
 
 use crate::ambient::AmbientEngine;
 use crate::atlas::AtlasError;
-use crate::disk::manifest::{LampEntry, Manifest, StageSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge, Occlusion};
 use crate::lamp::{self, LampError, LampPath};
 use crate::maps::Lane;
-use crate::plan::{Effect, EffectPlan};
+use crate::plan::{Effect, EffectPlan, LayersNeeded};
 use crate::progress::{Progress, Stage};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice, SunRequest};
@@ -205,7 +205,11 @@ fn bake_prepared(
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
     let Prepared { scene, path, lamp, plan, .. } = prepared;
-    let settings = &BakeSettings { lane_count: plan.lane_count(settings.lane_count), ..settings.clone() };
+    let settings = &BakeSettings {
+        lane_count: plan.lane_count(settings.lane_count),
+        loss_map: plan.is_on(Effect::LossMap),
+        ..settings.clone()
+    };
     check_memory(scene, settings, settings.page_size_texels)?;
     check_cancelled(progress)?;
     let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
@@ -238,6 +242,7 @@ fn bake_prepared(
     timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
 
     let vertices = pages.bake_vertices(&mut writer)?;
+    let needed = layers_needed(&pages, &atlases);
     let mut manifest = finished(pages, prepared, &lights, settings);
     if let Some(ambient) = &mut manifest.ambient {
         ambient.vertices = vertices;
@@ -246,6 +251,7 @@ fn bake_prepared(
         stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,
         instances: instance_entries(scene, atlas, &written),
+        effects: plan.clone().settled(needed).entries(),
         ..manifest
     };
     check_cancelled(progress)?;
@@ -268,11 +274,22 @@ fn lamp_engine<'a>(
     engine.ok_or(BakeError::LampEngine(choice))
 }
 
+/// How many layers texels turned out to need; of two lights, those of the light that needs more.
+fn layers_needed(pages: &PageBaker, atlases: &[AtlasEntry]) -> LayersNeeded {
+    let of_sun = atlases.iter().flat_map(|page| &page.lanes).map(|lane| lane.layers.len());
+    let of_lamp = atlases.iter().flat_map(|page| &page.lamp).map(|lamp| lamp.layers.len());
+    LayersNeeded {
+        layers: of_sun.chain(of_lamp).max().unwrap_or(0),
+        crowded_texels: pages.sun.crowded_texels.max(pages.lamp.crowded_texels),
+        texels: pages.stats.texels,
+    }
+}
+
 /// The manifest with what baking its lights took and lost.
 fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &BakeSettings) -> Manifest {
     let PageBaker { stats, sun, lamp, atlas, sky_account, .. } = pages;
     let manifest = manifest_of(prepared, atlas, settings);
-    let Account { work, intervals, dark_texels, most_intervals, loss } = sun;
+    let Account { work, intervals, dark_texels, most_intervals, loss, .. } = sun;
     let lamp = manifest.lamp.zip(lights.lamp).map(|(entry, light)| {
         let (stats, error) = lamp.of_lamp(&light);
         LampEntry { stats, error, ..entry }

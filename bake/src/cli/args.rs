@@ -100,7 +100,7 @@ pub struct BakeArgs {
     /// the summary and sunbake.json say), and lost_minutes.N.exr with the channels `layers` and `bits`, in minutes.
     #[arg(long)]
     pub loss_map: bool,
-    /// Print what would be baked and why, and bake nothing.
+    /// Print what would be baked, why, at what cost and what would turn it over, and bake nothing.
     #[arg(long)]
     pub explain: bool,
     #[command(flatten)]
@@ -263,7 +263,7 @@ pub struct OutputArgs {
     /// Print nothing but errors (and the JSON, with --json).
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Print every stage's seconds.
+    /// Print every stage's seconds, and every effect.
     #[arg(short, long)]
     pub verbose: bool,
 }

@@ -89,10 +89,9 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
     lines.0
 }
 
-/// The effects, one a line.
+/// The effects, a block each.
 pub fn effects(entries: &[EffectEntry]) -> String {
-    let row = |e: &EffectEntry| format!("  {:<4}{:<20}{}\n", if e.on { "on" } else { "off" }, e.effect, e.why);
-    entries.iter().map(row).collect()
+    sunbake::plan::in_words(entries)
 }
 
 /// The stages with their seconds, one a line.

@@ -314,15 +314,22 @@ pub struct InstanceEntry {
     pub double_sided: bool,
 }
 
-/// One effect: on or off, and why.
+/// One effect: on or off, and why. What it costs and what turns it over is in words for people; sets of older bakers do
+/// not say it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectEntry {
     /// Its name.
     pub effect: String,
     /// Whether it was baked.
     pub on: bool,
-    /// The reason, and what would turn it over.
+    /// The reason.
     pub why: String,
+    /// What it costs while it is on; of what is off, what it would cost.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub cost: String,
+    /// The flag, or the property of the scene, that would turn it over.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub turned_over_by: String,
 }
 
 /// What the bake took.

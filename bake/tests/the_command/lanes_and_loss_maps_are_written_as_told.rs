@@ -89,6 +89,22 @@ fn fence() -> Vec<u8> {
     glb(&json, &bytes)
 }
 
+#[test]
+fn a_second_layer_is_there_where_texels_need_it_and_says_how_many() {
+    let desk = Desk::new();
+    desk.write("fence.glb", &fence());
+    let usual =
+        ["bake", "fence.glb", "-o", "out/set", "--place=40,0", "--date=2026-12-21", "--size=128", "--only=intervals"];
+    for (cap, layers, says) in [("--layers=1", 1, "merged"), ("--layers=4", 2, "more than four intervals: 2 layers")] {
+        let manifest = desk.run(&[&usual[..], &[cap, "--json", "--force"]].concat()).ok().json();
+        let found = manifest["atlases"][0]["lanes"][0]["layers"].as_array().map(Vec::len);
+        let effects = manifest["effects"].as_array().expect("a list");
+        let effect = effects.iter().find(|e| e["effect"] == "several-layers").expect("in every plan");
+        assert_eq!((found, &effect["on"]), (Some(layers), &json!(layers > 1)), "{effect}");
+        assert!(effect["why"].as_str().is_some_and(|why| why.contains(says)), "{effect}");
+    }
+}
+
 /// The channels of a loss map, by name.
 fn minutes(file: &Path) -> BTreeMap<String, Vec<f32>> {
     let image = exr::prelude::read_first_flat_layer_from_file(file).expect("an OpenEXR file");

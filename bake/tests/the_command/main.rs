@@ -12,4 +12,5 @@ mod every_file_at_hand_ends_well;
 mod it_minds_its_manners;
 mod lamps_are_baked_as_told;
 mod lanes_and_loss_maps_are_written_as_told;
+mod what_is_off_costs_nothing;
 mod what_is_wrong_is_said_in_one_line;
