@@ -1,11 +1,14 @@
 //! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl`,
-//! `lamp_baked.wgsl` and `ambient_*.wgsl`, around [`sunbake::maps::soft_visibility`].
+//! `sun_baked_point.wgsl`, `lamp_baked.wgsl` and `ambient_*.wgsl`, around [`sunbake::maps::soft_visibility`] and
+//! [`sunbake::maps::hard_visibility`].
 
 use crate::light::{Daylight, LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
 use std::ops::{Add, Mul};
 use sunbake::ambient::harmonics;
-use sunbake::maps::{AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, soft_visibility};
+use sunbake::maps::{
+    AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, hard_visibility, soft_visibility,
+};
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
 /// What programs that read a page must know of it. `radius_rad` is the sun's angular radius.
@@ -19,6 +22,7 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
     PageVariant {
         max_code: bits.max_code(),
         lanes: page.lanes.iter().map(lane).collect(),
+        is_point_sun: radius_rad == 0.0 && !page.lanes.is_empty(),
         lamp_layer_count,
         ambient: ambient_model(page),
         has_backs: page.ambient.as_ref().is_some_and(|ambient| ambient.back.is_some()),
@@ -64,8 +68,11 @@ impl<'a> Page<'a> {
         let index = texel.y as usize * self.maps.width as usize + texel.x as usize;
         let mut seen = 0.0;
         for (lane, variant) in self.maps.lanes.iter().zip(&self.variant.lanes).filter(|(l, _)| !l.layers.is_empty()) {
-            let width_t = moment.width_t * variant.chord;
-            seen += variant.weight * soft_visibility(&lane.layers, index, self.bits, moment.t, width_t);
+            seen += variant.weight
+                * match self.variant.is_point_sun {
+                    true => hard_visibility(&lane.layers, index, self.bits, moment.t),
+                    false => soft_visibility(&lane.layers, index, self.bits, moment.t, moment.width_t * variant.chord),
+                };
         }
         seen
     }
@@ -85,6 +92,10 @@ impl<'a> Page<'a> {
     pub fn sun_visibility(&self, page_uv: Vec2, face: Vec3, filter: Filter, moment: &Moment) -> f32 {
         if self.variant.layer_count() == 0 {
             return 0.0;
+        }
+        if self.variant.is_point_sun {
+            let is_before = face.dot(moment.sun_direction) > 0.0;
+            return if is_before { self.page_visibility(page_uv, filter, moment) } else { 0.0 };
         }
         let disc_share = (0.5 + face.dot(moment.sun_direction) * moment.discs_per_radian).clamp(0.0, 1.0);
         if disc_share <= 0.0 {

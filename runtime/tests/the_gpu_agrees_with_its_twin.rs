@@ -139,6 +139,17 @@ fn every_model_of_ambient_light() {
 }
 
 #[test]
+fn posts_under_a_sun_without_width() {
+    let gpu = gpu();
+    let mut point = equinox(35.0);
+    point.angular_radius_rad = 0.0;
+    let stage = bake(posts(), Some(point), 20, Bits::Sixteen);
+    for (name, filter) in [("point sun bilinear", Filter::Bilinear), ("point sun nearest", Filter::Nearest)] {
+        assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
+    }
+}
+
+#[test]
 fn posts_under_a_disc_of_lanes() {
     let gpu = gpu();
     for lane_count in [3, 5] {

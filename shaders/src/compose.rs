@@ -50,6 +50,8 @@ pub struct PageVariant {
     pub max_code: u16,
     /// In the order of their layers. Empty: there is no sun in the set, or no texel of the page ever sees it.
     pub lanes: Vec<LaneVariant>,
+    /// Whether the sun has no width: it is seen or not, and nothing measures how much of it.
+    pub is_point_sun: bool,
     /// Array layers of the lamp's textures. None: there is no lamp in the set, or no texel of the page ever sees it.
     pub lamp_layer_count: u32,
     /// What ambient light is made of.
@@ -183,13 +185,13 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
         text.push_str(wgsl!("sun_none"));
         return text;
     }
-    text.push_str(wgsl!("soft_visibility"));
-    text.push_str(&disc_visibility(&page.lanes));
+    text.push_str(if page.is_point_sun { wgsl!("hard_visibility") } else { wgsl!("soft_visibility") });
+    text.push_str(&disc_visibility(&page.lanes, page.is_point_sun));
     text.push_str(match filter {
         Filter::Nearest => wgsl!("filter_nearest"),
         Filter::Bilinear => wgsl!("filter_bilinear"),
     });
-    text.push_str(wgsl!("sun_baked"));
+    text.push_str(if page.is_point_sun { wgsl!("sun_baked_point") } else { wgsl!("sun_baked") });
     text
 }
 
@@ -208,15 +210,17 @@ pub(crate) fn push_holes(text: &mut String, surface: SurfaceVariant, vertex: &st
 }
 
 /// The lanes' sum, written out: their number, layers, weights and chords are constants of the page.
-fn disc_visibility(lanes: &[LaneVariant]) -> String {
+fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
     let mut text = String::from("fn disc_visibility(texel: vec2<i32>) -> f32 {\n    var seen = 0.0;\n");
     let mut first = 0;
     for lane in lanes.iter().filter(|lane| lane.layer_count > 0) {
         let end = first + lane.layer_count;
         let (weight, chord) = (lane.weight, lane.chord);
+        let (kind, width) =
+            if is_point_sun { ("hard", String::new()) } else { ("soft", format!(", frame.width_t * {chord:?}")) };
         let _ = writeln!(
             text,
-            "    seen += {weight:?} * soft_visibility(texel, vec2<i32>({first}, {end}), frame.t, frame.width_t * {chord:?});"
+            "    seen += {weight:?} * {kind}_visibility(texel, vec2<i32>({first}, {end}), frame.t{width});"
         );
         first = end;
     }

@@ -29,6 +29,7 @@ fn pages() -> Vec<PageVariant> {
     let with = |lanes: &Vec<LaneVariant>, max_code, ambient, lamp_layer_count| PageVariant {
         max_code,
         lanes: lanes.clone(),
+        is_point_sun: max_code == 255,
         lamp_layer_count,
         ambient,
         has_backs: lamp_layer_count > 0,
@@ -106,6 +107,25 @@ fn every_composed_shader_is_valid() {
 #[test]
 fn the_snippet_for_engines_is_valid() {
     validated(ENGINE_WGSL);
+}
+
+#[test]
+fn a_sun_without_width_has_no_code_that_measures_widths() {
+    let page = |is_point_sun| PageVariant {
+        max_code: 255,
+        lanes: vec![LaneVariant { layer_count: 2, weight: 1.0, chord: 1.0 }],
+        is_point_sun,
+        ..PageVariant::default()
+    };
+    let surface = SurfaceVariant::default();
+    for filter in [Filter::Nearest, Filter::Bilinear] {
+        let texts = |page: &PageVariant| [lit_shader(surface, page, filter), visibility_shader(surface, page, filter)];
+        // Looked for in what has them as well, so that the words are those that would be there.
+        for words in ["soft_visibility", "frame.width_t", "frame.discs_per_radian", "window_start", "disc_share"] {
+            assert!(texts(&page(false)).iter().all(|text| text.contains(words)), "{words}");
+            assert!(!texts(&page(true)).iter().any(|text| text.contains(words)), "{words}");
+        }
+    }
 }
 
 #[test]

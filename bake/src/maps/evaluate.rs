@@ -1,5 +1,5 @@
-//! Soft visibility from stored codes: the CPU twin of `soft_visibility` in `shaders/src/soft_visibility.wgsl`, with the
-//! same names in the same order.
+//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in `shaders/src/wgsl`,
+//! with the same names in the same order.
 //!
 //! The sun's disc, while it crosses a shadow's edge, is taken as a line along its path (the chapter's linear light):
 //! `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`, w being the sun's width in t.
@@ -24,4 +24,43 @@ pub fn soft_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, w
         }
     }
     (lit_codes / width_codes).min(1.0)
+}
+
+/// Whether a texel sees a sun without width at `t`: 1 from each stored rise to its fall, both included, else 0.
+pub fn hard_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32) -> f32 {
+    let now = t * f32::from(bits.max_code());
+    for layer in layers {
+        for c in 0..4 {
+            let rise = f32::from(layer.rise[texel][c]);
+            let fall = f32::from(layer.fall[texel][c]);
+            if rise <= now && now <= fall {
+                return 1.0;
+            }
+        }
+    }
+    0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PageEncoder;
+    use super::*;
+    use crate::visibility::Intervals;
+
+    #[test]
+    fn a_sun_without_width_is_seen_from_rise_to_fall_and_as_any_narrow_one_between_edges() {
+        let mut page = PageEncoder::new(2, Bits::Sixteen, 2);
+        let lit = [[0.0, 0.125], [0.25, 0.5], [0.75, 1.0]];
+        page.set(0, &Intervals::from_unsorted(lit.to_vec()));
+        let layers = page.finish();
+        for i in 0..=1000 {
+            let t = i as f32 / 1000.0;
+            let seen = hard_visibility(&layers, 0, Bits::Sixteen, t);
+            let is_near_edge = lit.as_flattened().iter().any(|edge| (edge - f64::from(t)).abs() < 2.0 / 65_535.0);
+            let is_end = i % 1000 == 0;
+            assert!(is_near_edge || seen == soft_visibility(&layers, 0, Bits::Sixteen, t, 0.0), "{t}");
+            assert!(!is_end || seen == 1.0, "{t}");
+            assert_eq!(hard_visibility(&layers, 1, Bits::Sixteen, t), 0.0, "{t}");
+        }
+    }
 }

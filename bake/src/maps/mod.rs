@@ -13,7 +13,7 @@ mod lanes;
 pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_open, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
-pub use evaluate::soft_visibility;
+pub use evaluate::{hard_visibility, soft_visibility};
 pub use lanes::Lane;
 
 /// Bits of a stored time.
