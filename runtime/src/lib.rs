@@ -3,7 +3,7 @@
 //! A [`Stage`] is a baked set with its scene, or a scene alone, ready to be looked at. A [`Shot`] is the stage through a camera, a
 //! [`Moment`] is where the sun stands and what light that makes. A [`technique::Technique`] answers, for a shot at a
 //! moment, how much of the sun each pixel's surface sees; all answer with the same kind of image, so all are compared
-//! alike. The modules read in that order:
+//! alike. A [`DrawPlan`] says what that calls for, and why. The modules read in that order:
 //!
 //! ```text
 //! stage -> camera -> light -> technique (baked on the GPU | on the CPU | volumes | truth) -> shade -> image
@@ -15,6 +15,7 @@ pub mod compare;
 pub mod gpu;
 pub mod image;
 pub mod light;
+pub mod plan;
 pub mod playback;
 pub mod shade;
 pub mod shadow_maps;
@@ -31,6 +32,7 @@ pub mod volumes;
 pub use camera::{Camera, View};
 pub use image::Raster;
 pub use light::Moment;
+pub use plan::DrawPlan;
 pub use shot::Shot;
 pub use stage::Stage;
 pub use sunbake_shaders::{AmbientModel, Filter};

@@ -37,6 +37,7 @@ fn a_plain_scene_needs_three_pipelines_and_one_pair_of_textures() {
         time_textures: 2,
         vertex_buffers: 2,
         bind_groups: 2,
+        bindings: 4, // The frame, materials; rise and fall.
         targets: 2,
         draws: 1,
         map_bytes: width * height * layers as u64 * 16,
@@ -145,7 +146,8 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
         passes: 3,    // Depth, volumes, light.
         pipelines: 4, // Depth, the sun's gate, the background, faces before the surface.
         vertex_buffers: 2,
-        bind_groups: 1,
+        bind_groups: 2, // The frame's, and the casters'.
+        bindings: 3,    // The frame, materials; points.
         targets: 2,
         draws: 1,
         stencil_pipelines: 1,
@@ -207,6 +209,12 @@ fn a_variant_builds_its_own_maps_and_pipelines_and_no_others() {
             Variant::Planar => (1, 16 * 16),
             _ => (0, 0),
         };
+        let read = match variant {
+            Variant::Planar => 1, // A mask.
+            Variant::Plain => 2,  // Matrices, maps.
+            Variant::Ground => 5, // A sampler as well; a mask, and its sampler.
+            _ => 3,
+        };
         // The ground and what stands on it share their pipelines, but for those that light the ground apart.
         let (shadow_pipelines, surface_pipelines) = match variant {
             Variant::Ground => (4, 2), // Depths, what casts, and its blur across and down.
@@ -219,7 +227,9 @@ fn a_variant_builds_its_own_maps_and_pipelines_and_no_others() {
             // Both sides cast.
             two_sided_pipelines: shadow_pipelines.min(2),
             vertex_buffers: 2,
-            bind_groups: 1,
+            // The frame's, what is read, and a matrix for each map or what is laid flat.
+            bind_groups: 2 + maps.max(1),
+            bindings: 2 + read + maps.max(1),
             targets: 2,
             draws: 2,
             shadow_pipelines,

@@ -42,6 +42,11 @@ fn volumes_and_truth_draw_one_mask_and_the_plan_is_told() {
         assert_eq!(report["clock"], "17:00");
         let is_live = technique != "truth:hard";
         assert_eq!(stderr(&output).contains("their whole cards cast"), is_live, "{}", stderr(&output));
+        assert!(report["effects"].as_array().is_some_and(|effects| effects.len() > 2), "{technique}");
+        assert!(
+            stderr(&output).contains("  on  alpha-test") && stderr(&output).contains("      off by"),
+            "{technique}"
+        );
         assert_eq!(report["plan"].as_array().is_some_and(|lines| lines.len() > 2), is_live);
         assert_eq!(report["details"]["casters"]["triangles"].as_u64().is_some_and(|n| n > 100_000), is_live);
         assert_eq!(report["bytes"].as_u64().is_some_and(|bytes| bytes > 100_000), is_live);

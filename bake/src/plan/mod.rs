@@ -8,7 +8,7 @@ mod ambient;
 mod times;
 mod words;
 
-pub use words::in_words;
+pub use words::{in_words, said};
 
 use crate::disk::manifest::EffectEntry;
 use crate::lamp::LampPath;

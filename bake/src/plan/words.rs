@@ -7,7 +7,7 @@ const WIDTH: usize = 110;
 /// Columns before an effect's name.
 const MARGIN: usize = 6;
 /// Columns before what is said of it.
-const INDENT: usize = 26;
+const INDENT: usize = 28;
 
 /// The effects, a block each: whether it is on, its name and why; then what it costs, and what turns it over. Lines are
 /// wrapped at 110 columns.
@@ -30,8 +30,8 @@ fn block(entry: &EffectEntry) -> String {
     text
 }
 
-/// A heading, and beside it words as lines of their own column.
-fn said(heading: &str, words: &str) -> String {
+/// A heading of few words, and beside it words as lines of their own column.
+pub fn said(heading: &str, words: &str) -> String {
     let lines = wrapped(words, WIDTH - INDENT);
     let line = |(i, line): (usize, String)| {
         let heading = if i == 0 { heading } else { "" };

@@ -130,7 +130,8 @@ pub struct MannersArgs {
     /// Print nothing but errors.
     #[arg(short, long)]
     pub quiet: bool,
-    /// Print what the technique decided for the picture, the last of several, and why.
+    /// Print which effects the picture calls for (the last of several), what each takes and what turns it over, and what the
+    /// technique decided.
     #[arg(long)]
     pub explain: bool,
 }

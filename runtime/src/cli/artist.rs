@@ -8,11 +8,11 @@ use sunbake::BakeError;
 use sunbake::scene::LoadLimits;
 use sunbake::settings::SunRequest;
 use sunbake::sun::DayRequest;
-use sunbake_runtime::gpu::{Gpu, GpuError, VolumeSettings};
+use sunbake_runtime::gpu::{Gpu, GpuError, Output, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::stage::MAX_SCENE_BYTES;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Volumes};
-use sunbake_runtime::{AmbientModel, Filter, Moment, Raster, Shot, Stage, View};
+use sunbake_runtime::{AmbientModel, DrawPlan, Filter, Moment, Raster, Shot, Stage, View};
 
 /// Most samples of a picture: one of 16384 by 16384.
 const MOST_SAMPLES: u64 = 1 << 28;
@@ -243,6 +243,21 @@ fn lights(stage: &Stage, look: &LookArgs, t: f64) -> Result<Moment, Failure> {
             Err(Failure::usage("there is no lamp: bake one with --lamp FILE, or leave --light lamp out"))
         }
     }
+}
+
+/// Which picture [`draw`] asks a technique for.
+pub fn kind_of(moment: &Moment, output: OutputChoice) -> Output {
+    match output {
+        OutputChoice::Color | OutputChoice::Volumes => Output::Lit,
+        OutputChoice::Visibility if moment.is_lit_by_lamp_alone() => Output::LampVisibility,
+        OutputChoice::Visibility => Output::Visibility,
+    }
+}
+
+/// Prints which effects a picture calls for, and what its technique decided.
+pub fn explain(technique: &dyn Technique, effects: &DrawPlan) {
+    eprint!("{}", effects.in_words());
+    technique.plan().iter().for_each(|line| eprintln!("{line}"));
 }
 
 /// What a frame is made of.

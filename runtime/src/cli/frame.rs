@@ -1,7 +1,7 @@
 //! `sunplay frame`.
 
 use super::args::FrameArgs;
-use super::artist::{Picture, draw, moment, open_gpu, set_threads, stage, technique, view};
+use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
 use super::when::label;
@@ -27,14 +27,15 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let clock = label(stage.path.as_ref(), t);
+    let effects = technique.effects(&shot, kind_of(&moment, args.output));
     if args.manners.explain {
-        technique.plan().iter().for_each(|line| eprintln!("{line}"));
+        explain(technique.as_ref(), &effects);
     }
     if args.manners.json {
         let report = json!({
             "file": args.output_file, "t": t, "clock": clock, "size": args.look.size, "seconds": seconds,
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
-            "gpu": technique.census(), "plan": technique.plan(), "details": technique.details(),
+            "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(), "details": technique.details(),
         });
         println!("{report:#}");
     } else if !args.manners.quiet {

@@ -1,7 +1,7 @@
 //! `sunplay frames`.
 
 use super::args::FramesArgs;
-use super::artist::{Picture, draw, moment, open_gpu, set_threads, stage, technique, view};
+use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
 use super::terminal::Terminal;
@@ -53,14 +53,17 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     write_animation(&args.output_folder.join("day.png"), &moving, delay_ms)?;
     drop(terminal);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
+    let last = moment(&stage, &args.look, (f64::from(args.count) - 0.5) / f64::from(args.count))?;
+    let effects = technique.effects(&shot, kind_of(&last, args.output));
     if args.manners.explain {
-        technique.plan().iter().for_each(|line| eprintln!("{line}"));
+        explain(technique.as_ref(), &effects);
     }
     if args.manners.json {
         let report = json!({
             "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
             "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
-            "bytes": technique.bytes(), "gpu": technique.census(), "plan": technique.plan(), "details": technique.details(),
+            "bytes": technique.bytes(), "gpu": technique.census(), "effects": effects.entries(),
+            "plan": technique.plan(), "details": technique.details(),
         });
         println!("{report:#}");
     } else if !args.manners.quiet {

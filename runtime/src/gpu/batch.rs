@@ -76,6 +76,23 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
 /// Sorts what is drawn into batches and lays out the streams. Given the ground, it gets batches of its own, and so does what casts
 /// and is not drawn.
 pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
+    let mut vertices = Vertices::default();
+    let batches = by_key(stage, ground).into_iter().map(|(key, triangles)| {
+        let batch = Batch {
+            key,
+            vertex_count: 3 * triangles.len() as u32,
+            first: vertices.positions.len() as u64,
+            first_texture: vertices.textures.len() as u64,
+            first_color: vertices.colors.len() as u64,
+        };
+        triangles.into_iter().for_each(|triangle| push_triangle(stage, triangle, &key, &mut vertices));
+        batch
+    });
+    (batches.collect(), vertices)
+}
+
+/// The triangles of each batch.
+pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<usize>> {
     let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
     for instance in 0..stage.scene.instances.len() {
         let key = key(stage, instance);
@@ -91,19 +108,7 @@ pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices)
             triangles.entry(key).or_default().push(triangle);
         }
     }
-    let mut vertices = Vertices::default();
-    let batches = triangles.into_iter().map(|(key, triangles)| {
-        let batch = Batch {
-            key,
-            vertex_count: 3 * triangles.len() as u32,
-            first: vertices.positions.len() as u64,
-            first_texture: vertices.textures.len() as u64,
-            first_color: vertices.colors.len() as u64,
-        };
-        triangles.into_iter().for_each(|triangle| push_triangle(stage, triangle, &key, &mut vertices));
-        batch
-    });
-    (batches.collect(), vertices)
+    triangles
 }
 
 fn key(stage: &Stage, instance: usize) -> BatchKey {

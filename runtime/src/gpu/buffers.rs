@@ -2,6 +2,7 @@
 
 use super::batch::{Vertices, wrap_code};
 use super::device::{Gpu, GpuError};
+use super::needs::SceneNeeds;
 use crate::View;
 use crate::light::Moment;
 use crate::stage::Stage;
@@ -38,12 +39,14 @@ pub struct FrameBindings {
     pub lamp: Option<wgpu::Buffer>,
     /// The sky in spherical harmonics; none where no page wants it.
     pub sky: Option<wgpu::Buffer>,
+    /// Slots of the bindings.
+    pub slots: usize,
     frame: wgpu::Buffer,
 }
 
 impl FrameBindings {
     /// Uploads the materials.
-    pub fn new(gpu: &Gpu, stage: &Stage) -> Self {
+    pub fn new(gpu: &Gpu, stage: &Stage, needs: &SceneNeeds) -> Self {
         let materials: Vec<MaterialUniform> = stage.scene.materials.iter().map(material_uniform).collect();
         let materials = gpu.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("materials"),
@@ -51,16 +54,15 @@ impl FrameBindings {
             usage: wgpu::BufferUsages::STORAGE,
         });
         let frame = uniform_buffer(gpu, "frame", size_of::<FrameUniform>());
-        let lamp = stage.lamp.as_ref().map(|_| uniform_buffer(gpu, "lamp", size_of::<LampUniform>()));
-        let has_sky = stage.pages.iter().flat_map(|page| &page.ambient).any(|ambient| ambient.front.sky.is_some());
-        let sky = has_sky.then(|| uniform_buffer(gpu, "sky", size_of::<SkyUniform>()));
+        let lamp = needs.has_lamp.then(|| uniform_buffer(gpu, "lamp", size_of::<LampUniform>()));
+        let sky = needs.has_sky().then(|| uniform_buffer(gpu, "sky", size_of::<SkyUniform>()));
         let storage = wgpu::BufferBindingType::Storage { read_only: true };
         let uniform = wgpu::BufferBindingType::Uniform;
         let mut bindings = vec![(0, &frame, uniform), (1, &materials, storage)];
         bindings.extend(lamp.iter().map(|lamp| (2, lamp, uniform)));
         bindings.extend(sky.iter().map(|sky| (3, sky, uniform)));
-        let (layout, group) = bound(gpu, &bindings);
-        Self { layout, group, lamp, sky, frame }
+        let ((layout, group), slots) = (bound(gpu, &bindings), bindings.len());
+        Self { layout, group, lamp, sky, slots, frame }
     }
 
     /// Writes what a frame needs. A lamp that is not to be seen gives no light.

@@ -8,12 +8,12 @@ use sunbake_shaders::{AmbientModel, PageVariant};
 
 /// A page's textures and how programs read them. None where the page has neither a sun nor ambient light.
 pub struct PageTextures {
-    /// What programs must know of the page.
-    pub variant: PageVariant,
     /// The layout of its bindings.
     pub layout: Option<wgpu::BindGroupLayout>,
     /// Its bindings.
     pub bind_group: Option<wgpu::BindGroup>,
+    /// Slots of these.
+    pub slots: usize,
     /// Textures with stored times.
     pub time_textures: usize,
     /// Textures with ambient light.
@@ -24,7 +24,7 @@ pub struct PageTextures {
 
 impl PageTextures {
     /// Uploads a page.
-    pub fn new(gpu: &Gpu, maps: &PageMaps, bits: Bits, variant: PageVariant) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, maps: &PageMaps, bits: Bits, variant: &PageVariant) -> Result<Self, GpuError> {
         let limits = gpu.device.limits();
         let edge = u64::from(maps.width.max(maps.height));
         GpuError::check_limit("the longer edge of a page", edge, u64::from(limits.max_texture_dimension_2d))?;
@@ -44,7 +44,7 @@ impl PageTextures {
         if let Some(ambient) = &maps.ambient {
             let views = ambient_views(gpu, maps, ambient, variant.ambient);
             bindings.extend(views.into_iter().map(|(place, view)| (place, view, wgpu::TextureViewDimension::D2Array)));
-            bytes += maps.texel_count() * ambient_bytes(&variant);
+            bytes += maps.texel_count() * ambient_bytes(variant);
         }
         let lamp_layers = variant.lamp_layer_count;
         if let Some(lamp) = maps.lamp.as_ref().filter(|_| lamp_layers > 0) {
@@ -58,7 +58,7 @@ impl PageTextures {
         let time_textures = 2 * (usize::from(layers > 0) + usize::from(lamp_layers > 0));
         let ambient_textures = bindings.len() - time_textures;
         let (layout, bind_group) = bound(gpu, &bindings).unzip();
-        Ok(Self { variant, layout, bind_group, time_textures, ambient_textures, bytes })
+        Ok(Self { layout, bind_group, slots: bindings.len(), time_textures, ambient_textures, bytes })
     }
 }
 

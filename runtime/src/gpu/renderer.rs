@@ -1,6 +1,6 @@
 //! Frames of a baked stage.
 
-use super::batch::BatchKey;
+use super::baked_plan::{ProgramKey, plan, programs};
 use super::census::Census;
 use super::device::{Gpu, GpuError};
 use super::program::{Program, Source, State, depth_state};
@@ -9,6 +9,7 @@ use super::scene::{SceneOnGpu, depth_key};
 use super::stopwatch::{FrameTimes, Phase, Stopwatch};
 use super::target::{DEPTH_FORMAT, LIT_FORMAT, Target, VISIBILITY_FORMAT};
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::stage::Stage;
 use crate::{Filter, View};
 use glam::Vec3;
@@ -52,14 +53,6 @@ pub struct Renderer<'g> {
     targets: BTreeMap<Output, Target>,
     stopwatch: Option<Stopwatch>,
     times: Option<FrameTimes>,
-}
-
-/// A batch's program does not depend on which image it draws with; on its page it does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum ProgramKey {
-    Depth(BatchKey),
-    Surface(Output, BatchKey),
-    Sky,
 }
 
 impl<'g> Renderer<'g> {
@@ -124,15 +117,7 @@ impl<'g> Renderer<'g> {
         if self.targets.get(&output).is_none_or(|target| target.size != size) {
             self.targets.insert(output, Target::new(self.gpu, size, output.format(), DEPTH_FORMAT)?);
         }
-        let mut missing: Vec<ProgramKey> = Vec::new();
-        for batch in &self.scene.batches {
-            missing.push(ProgramKey::Depth(depth_key(&batch.key)));
-            missing.push(ProgramKey::Surface(output, self.scene.surface_key(&batch.key)));
-        }
-        if output == Output::Lit {
-            missing.push(ProgramKey::Sky);
-        }
-        for key in missing {
+        for key in programs(&self.scene.needs, output) {
             if !self.programs.contains_key(&key) {
                 let program = self.program(&key);
                 self.programs.insert(key, program);
@@ -200,20 +185,14 @@ impl<'g> Renderer<'g> {
 
     /// What has been built so far.
     pub fn census(&self) -> Census {
-        let surfaces = || {
-            self.programs.keys().filter_map(|key| match key {
-                ProgramKey::Depth(key) | ProgramKey::Surface(_, key) => Some(key),
-                ProgramKey::Sky => None,
-            })
-        };
-        Census {
-            passes: 2,
-            pipelines: self.programs.len(),
-            alpha_test_pipelines: surfaces().filter(|key| key.surface.is_cut).count(),
-            two_sided_pipelines: surfaces().filter(|key| key.is_two_sided).count(),
-            targets: 2 * self.targets.len(),
-            ..Census::of_scene(&self.scene)
-        }
+        let surfaces = self.programs.keys().filter_map(ProgramKey::batch);
+        let scene = Census::of_scene(&self.scene).with_pipelines(self.programs.len(), surfaces);
+        Census { passes: 2, targets: 2 * self.targets.len(), ..scene }
+    }
+
+    /// What pictures of a kind call for.
+    pub fn plan(&self, output: Output) -> DrawPlan {
+        plan(&self.scene.needs, output)
     }
 }
 

@@ -4,9 +4,9 @@ use super::batch::{Batch, BatchKey, batches};
 use super::buffers::{FrameBindings, upload_streams};
 use super::device::{Gpu, GpuError};
 use super::maps::PageTextures;
+use super::needs::{PageNeeds, SceneNeeds};
 use super::program::Program;
 use super::textures::BaseTextures;
-use crate::playback::page_variant;
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
@@ -14,6 +14,8 @@ use sunbake_shaders::{PageVariant, Stream};
 
 /// Surfaces, their maps and their textures.
 pub struct SceneOnGpu {
+    /// What was to be built.
+    pub needs: SceneNeeds,
     /// Draws.
     pub batches: Vec<Batch>,
     /// What casts and is not drawn, where that was asked for.
@@ -37,31 +39,29 @@ impl SceneOnGpu {
     /// Uploads a stage, its ground as batches of their own, and what casts and is not drawn.
     pub fn with_ground(gpu: &Gpu, stage: &Stage, ground: Option<&Ground>) -> Result<Self, GpuError> {
         let (batches, vertices) = batches(stage, ground);
-        let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
-        let page = |maps| PageTextures::new(gpu, maps, stage.bits, page_variant(maps, stage.bits, radius_rad));
-        let pages = stage.pages.iter().map(page).collect::<Result<_, _>>()?;
-        let keys = batches.iter().filter_map(|batch| batch.key.texture).collect();
+        let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key));
+        let page = |(maps, page): (_, &PageNeeds)| PageTextures::new(gpu, maps, stage.bits, &page.variant);
+        let pages = stage.pages.iter().zip(&needs.pages).map(page).collect::<Result<_, _>>()?;
         let (hidden, batches) = batches.into_iter().partition(|batch| batch.key.is_hidden);
         Ok(Self {
             streams: upload_streams(gpu, &vertices)?,
             batches,
             hidden,
             pages,
-            textures: BaseTextures::new(gpu, stage, &keys)?,
-            frame: FrameBindings::new(gpu, stage),
+            textures: BaseTextures::new(gpu, stage, &needs.textures())?,
+            frame: FrameBindings::new(gpu, stage, &needs),
+            needs,
         })
     }
 
     /// How a batch's page is read.
     pub fn variant(&self, key: &BatchKey) -> &PageVariant {
-        &self.pages[key.page as usize].variant
+        self.needs.variant(key)
     }
 
     /// The key of a batch's program: pages that programs read alike share one.
     pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
-        let variant = self.variant(key);
-        let page = self.pages.iter().position(|p| p.variant == *variant).unwrap_or(0) as u32;
-        BatchKey { page, texture: None, ..*key }
+        self.needs.surface_key(key)
     }
 
     /// Layouts of the bindings of a program that shades a batch.

@@ -17,6 +17,9 @@ pub struct BaseTextures {
 }
 
 impl BaseTextures {
+    /// Slots of the bindings of each: a texture and its sampler.
+    pub const SLOTS: usize = 2;
+
     /// Uploads the textures that some batch draws with.
     pub fn new(gpu: &Gpu, stage: &Stage, keys: &BTreeSet<TextureKey>) -> Result<Self, GpuError> {
         if keys.is_empty() {

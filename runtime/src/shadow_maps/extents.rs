@@ -57,6 +57,11 @@ impl ShadowScene {
         }
     }
 
+    /// Whether anything casts.
+    pub fn has_casters(&self) -> bool {
+        !self.casters_m.is_empty()
+    }
+
     /// How near the nearest triangle's box is to a point; 0 within one.
     pub fn nearest_m(&self, point_m: DVec3) -> f64 {
         let to_box = |[low, high]: &[Vec3; 2]| point_m.clamp(low.as_dvec3(), high.as_dvec3()).distance(point_m);

@@ -3,10 +3,11 @@
 //! One primary ray a pixel and one evaluation of the maps. Wrong where the maps are: by their codes' step, by a texel's
 //! size, and where the sun's disc is not a line along its path.
 
-use super::Technique;
-use crate::gpu::GpuError;
+use super::{Technique, on_cpu};
+use crate::gpu::{GpuError, Output};
 use crate::image::Raster;
 use crate::light::{LampMoment, Moment};
+use crate::plan::DrawPlan;
 use crate::playback::{Page, ambient_bytes, page_variant};
 use crate::shade::towards_eye;
 use crate::shot::Shot;
@@ -70,6 +71,10 @@ impl Technique for BakedCpu<'_> {
 
     fn bytes(&self) -> u64 {
         map_bytes(self.stage)
+    }
+
+    fn effects(&self, _shot: &Shot, _output: Output) -> DrawPlan {
+        on_cpu::baked(self.stage)
     }
 }
 

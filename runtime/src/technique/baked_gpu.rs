@@ -5,9 +5,10 @@
 //! rounding of it elsewhere.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, Gpu, GpuError, Renderer};
+use crate::gpu::{Census, Gpu, GpuError, Output, Renderer};
 use crate::image::Raster;
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use glam::Vec3;
@@ -53,6 +54,10 @@ impl Technique for BakedGpu<'_> {
 
     fn cost(&self) -> FrameCost {
         FrameCost { cpu_seconds: 0.0, passes: self.renderer.times() }
+    }
+
+    fn effects(&self, _shot: &Shot, output: Output) -> DrawPlan {
+        self.renderer.plan(output)
     }
 
     fn census(&self) -> Option<Census> {

@@ -5,6 +5,7 @@
 
 mod baked_cpu;
 mod baked_gpu;
+mod on_cpu;
 mod shadow_maps;
 mod truth;
 mod volumes;
@@ -15,9 +16,10 @@ pub use shadow_maps::ShadowMaps;
 pub use truth::{Light, Truth};
 pub use volumes::Volumes;
 
-use crate::gpu::{Census, FrameTimes, GpuError};
+use crate::gpu::{Census, FrameTimes, GpuError, Output};
 use crate::image::Raster;
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::shade;
 use crate::shot::Shot;
 use glam::Vec3;
@@ -72,6 +74,10 @@ pub trait Technique {
     fn details(&self) -> serde_json::Value {
         serde_json::Value::Null
     }
+
+    /// Which effects a shot's pictures of a kind call for. Where that depends on the view and the light, it is the most that they may
+    /// take before the first of the kind, and after that what the last one took.
+    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan;
 
     /// What was built on the GPU for it; none where the CPU draws.
     fn census(&self) -> Option<Census> {

@@ -5,9 +5,10 @@
 //! does about it, is in [`crate::shadow_maps::Variant`] and measured in `ARCHITECTURE.md`.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, Gpu, GpuError, MapRenderer, MapReport};
+use crate::gpu::{Census, Gpu, GpuError, MapRenderer, MapReport, Output};
 use crate::image::Raster;
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::shadow_maps::{MapSettings, Variant};
 use crate::shot::Shot;
 use crate::stage::Stage;
@@ -66,6 +67,10 @@ impl Technique for ShadowMaps<'_> {
     fn cost(&self) -> FrameCost {
         let report = self.renderer.report();
         FrameCost { cpu_seconds: report.fit_seconds, passes: report.times }
+    }
+
+    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan {
+        self.renderer.plan_of(shot.stage, output, shot.view.pixel_count() as u64)
     }
 
     fn census(&self) -> Option<Census> {

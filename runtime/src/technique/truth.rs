@@ -12,10 +12,11 @@
 //! The two are never mixed: a hard technique is right or wrong about the one, a soft technique about the other. Nothing is
 //! kept between frames. Soft truth is wrong by its sampling: with N rays a half-covered disc reads right to about 1/N.
 
-use super::Technique;
-use crate::gpu::GpuError;
+use super::{Technique, on_cpu};
+use crate::gpu::{GpuError, Output};
 use crate::image::Raster;
 use crate::light::{LampMoment, Moment, SunDisc, disc};
+use crate::plan::DrawPlan;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use glam::{DVec3, Vec3};
@@ -115,6 +116,14 @@ impl Technique for Truth {
             Self::Hard => "truth:hard".into(),
             Self::Soft { rays } => format!("truth:soft:{rays}"),
         }
+    }
+
+    fn effects(&self, shot: &Shot, _output: Output) -> DrawPlan {
+        let rays = match self {
+            Self::Hard => None,
+            Self::Soft { rays } => Some(*rays),
+        };
+        on_cpu::truth(shot.stage, rays)
     }
 
     fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {

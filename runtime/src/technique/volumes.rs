@@ -6,9 +6,10 @@
 //! pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies on it.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, FrameReport, Gpu, GpuError, VolumeRenderer, VolumeSettings};
+use crate::gpu::{Census, FrameReport, Gpu, GpuError, Output, VolumeRenderer, VolumeSettings};
 use crate::image::Raster;
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::volumes::{CasterCounts, Mode};
@@ -72,6 +73,10 @@ impl Technique for Volumes<'_> {
         let report = self.renderer.report();
         let cpu_seconds = report.lights.iter().map(|light| light.find_seconds + light.plan_seconds).sum();
         FrameCost { cpu_seconds, passes: report.times }
+    }
+
+    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan {
+        self.renderer.plan_of(shot.stage, output)
     }
 
     fn census(&self) -> Option<Census> {

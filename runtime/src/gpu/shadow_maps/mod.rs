@@ -7,26 +7,29 @@
 //! Nothing is built for what is not called for: no map where nothing can be in shadow, no mask without a ground, no pipeline for
 //! holes without holes.
 
+mod needs;
 mod passes;
 mod probe;
 mod programs;
 mod targets;
 
-use super::batch::BatchKey;
 use super::census::Census;
 use super::device::{Gpu, GpuError};
+use super::needs::SceneNeeds;
 use super::program::Program;
 use super::readback;
 use super::renderer::Output;
-use super::scene::{SceneOnGpu, depth_key};
+use super::scene::SceneOnGpu;
 use super::stopwatch::{FrameTimes, Stopwatch};
 use super::target::{DEPTH_FORMAT, Target};
 use crate::View;
 use crate::light::Moment;
+use crate::plan::DrawPlan;
 use crate::shadow_maps::{Extents, MapProjection, MapSettings, ShadowScene, Variant};
 use crate::stage::Stage;
 use glam::Vec3;
-use programs::{ProgramKey, caster_key};
+use needs::{MapNeeds, Shading};
+use programs::ProgramKey;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -64,7 +67,7 @@ pub struct MapRenderer<'g> {
     depths: Option<Depths>,
     mask: Option<[Mask; 2]>,
     flat: Option<Mask>,
-    read_group: Option<wgpu::BindGroup>,
+    read_group: Option<(wgpu::BindGroup, usize)>,
     /// The last sun's extents.
     extents: Option<Extents>,
     /// What the maps hold that are there.
@@ -73,6 +76,8 @@ pub struct MapRenderer<'g> {
     targets: BTreeMap<Output, Target>,
     stopwatch: Option<Stopwatch>,
     report: MapReport,
+    /// What the last picture called for.
+    last: Option<MapNeeds>,
 }
 
 /// The sun at a moment.
@@ -90,22 +95,8 @@ impl<'g> MapRenderer<'g> {
     /// Uploads a stage.
     pub fn new(gpu: &'g Gpu, stage: &Stage, settings: MapSettings) -> Result<Self, GpuError> {
         let shadow_scene = ShadowScene::new(stage);
-        let gathers = settings.gathers();
-        let compares = !gathers && !matches!(settings.variant, Variant::Plain | Variant::Planar);
-        let halfway = compares.then(|| probe::halfway(gpu)).transpose()?;
-        let filters = |halfway: f32| settings.means.filtering && halfway > 0.0 && halfway < 1.0;
-        let has_ground = shadow_scene.ground.height_m.is_some();
-        let reads = Reads {
-            has_depths: settings.variant != Variant::Planar,
-            tap: match halfway.map(filters) {
-                Some(true) => ShadowTap::Filtered,
-                Some(false) => ShadowTap::Nearest,
-                None if gathers => ShadowTap::Gathered,
-                None => ShadowTap::Manual,
-            },
-            has_mask: settings.variant == Variant::Ground && has_ground,
-            has_flat_mask: settings.variant == Variant::Planar,
-        };
+        let halfway = compares(&settings).then(|| probe::halfway(gpu)).transpose()?;
+        let reads = Reads::new(&settings, shadow_scene.ground.height_m.is_some(), halfway);
         let scene =
             gpu.checked("uploading the scene", || SceneOnGpu::with_ground(gpu, stage, Some(&shadow_scene.ground)))??;
         Ok(Self {
@@ -126,6 +117,7 @@ impl<'g> MapRenderer<'g> {
             targets: BTreeMap::new(),
             stopwatch: settings.is_timed.then(|| Stopwatch::new(gpu)).flatten(),
             report: MapReport::default(),
+            last: None,
         })
     }
 
@@ -221,7 +213,9 @@ impl<'g> MapRenderer<'g> {
             SunNow::Open => Some("nothing in view can be in shadow"),
             SunNow::Shaded(_) => None,
         };
-        gpu.checked("building pipelines", || self.prepare(view.size, output, &now))??;
+        let needs = self.needs_of(view.size, output, &now);
+        self.last = None;
+        gpu.checked("building pipelines", || self.prepare(view.size, &needs))??;
         gpu.checked("drawing", || {
             self.scene.frame.write(gpu, view, moment);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -234,9 +228,10 @@ impl<'g> MapRenderer<'g> {
                 self.shadow_passes(&mut encoder, maps);
             }
             self.depth_pass(&mut encoder, output);
-            self.surface_pass(&mut encoder, output, &now);
+            self.surface_pass(&mut encoder, output, &needs);
             let floats = readback::read(gpu, &self.targets[&output], output.channels(), encoder)?;
             self.report.times = self.stopwatch.as_ref().map(|stopwatch| stopwatch.read(gpu)).transpose()?;
+            self.last = Some(needs.drawn(self.report.drawn));
             Ok(floats)
         })
         .flatten()
@@ -245,20 +240,15 @@ impl<'g> MapRenderer<'g> {
     }
 
     /// Makes whatever a frame needs and is not there yet.
-    fn prepare(&mut self, size: [u32; 2], output: Output, now: &SunNow) -> Result<(), GpuError> {
+    fn prepare(&mut self, size: [u32; 2], needs: &MapNeeds) -> Result<(), GpuError> {
+        let output = needs.output;
         if self.targets.get(&output).is_none_or(|target| target.size != size) {
             self.targets.insert(output, Target::new(self.gpu, size, output.format(), DEPTH_FORMAT)?);
         }
-        let mut missing: Vec<ProgramKey> = Vec::new();
-        for batch in &self.scene.batches {
-            missing.push(ProgramKey::Depth(depth_key(&batch.key)));
-            missing.push(self.surface_program_key(output, now, &batch.key));
+        if let Shading::Shaded { maps, .. } = needs.shading {
+            self.prepare_shadows(size, maps)?;
         }
-        missing.extend((output == Output::Lit).then_some(ProgramKey::Sky));
-        if let SunNow::Shaded(maps) = now {
-            self.prepare_shadows(size, maps.len(), &mut missing)?;
-        }
-        for key in missing {
+        for key in needs.programs(&self.scene.needs) {
             if !self.programs.contains_key(&key) {
                 let program = self.program(&key);
                 self.programs.insert(key, program);
@@ -267,29 +257,18 @@ impl<'g> MapRenderer<'g> {
         Ok(())
     }
 
-    fn prepare_shadows(&mut self, size: [u32; 2], count: usize, missing: &mut Vec<ProgramKey>) -> Result<(), GpuError> {
+    /// Makes the maps and pictures of what casts that a frame needs and that are not there yet.
+    fn prepare_shadows(&mut self, size: [u32; 2], count: usize) -> Result<(), GpuError> {
         let (gpu, size_texels) = (self.gpu, self.settings.size_texels);
-        let casters: Vec<BatchKey> = self.casters().map(|batch| caster_key(&batch.key)).collect();
-        let on_ground: Vec<BatchKey> = self.casters_on_ground().map(|batch| caster_key(&batch.key)).collect();
-        if self.reads.has_depths {
-            missing.extend(casters.into_iter().map(ProgramKey::Map));
-            if self.depths.as_ref().is_none_or(|depths| depths.layers.len() < count) {
-                self.depths = Some(Depths::new(gpu, size_texels, count as u32)?);
-                (self.read_group, self.drawn) = (None, Vec::new());
-            }
+        if self.reads.has_depths && self.depths.as_ref().is_none_or(|depths| depths.layers.len() < count) {
+            self.depths = Some(Depths::new(gpu, size_texels, count as u32)?);
+            (self.read_group, self.drawn) = (None, Vec::new());
         }
-        if self.reads.has_mask {
-            missing.extend(on_ground.iter().copied().map(ProgramKey::Mask));
-            missing.extend([false, true].map(|is_down| ProgramKey::Blur { is_down }));
-            if self.mask.is_none() {
-                self.mask = Some([(); 2].map(|()| Mask::new(gpu, [size_texels; 2])));
-            }
+        if self.reads.has_mask && self.mask.is_none() {
+            self.mask = Some([(); 2].map(|()| Mask::new(gpu, [size_texels; 2])));
         }
-        if self.reads.has_flat_mask {
-            missing.extend(on_ground.into_iter().map(ProgramKey::Mask));
-            if self.flat.as_ref().is_none_or(|flat| flat.size != size) {
-                (self.flat, self.read_group) = (Some(Mask::new(gpu, size)), None);
-            }
+        if self.reads.has_flat_mask && self.flat.as_ref().is_none_or(|flat| flat.size != size) {
+            (self.flat, self.read_group) = (Some(Mask::new(gpu, size)), None);
         }
         if self.read_group.is_none() {
             let mask = self.mask.as_ref().map(|[mask, _]| mask);
@@ -298,22 +277,59 @@ impl<'g> MapRenderer<'g> {
         Ok(())
     }
 
+    /// What a frame calls for.
+    fn needs_of(&self, size: [u32; 2], output: Output, now: &SunNow) -> MapNeeds {
+        let shading = match now {
+            SunNow::Down => Shading::Down,
+            SunNow::Open => Shading::Open,
+            SunNow::Shaded(maps) => Shading::Shaded { maps: maps.len(), drawn: maps.len() },
+        };
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let (settings, reads, ground_casts) = (self.settings, self.reads, self.shadow_scene.ground.casts);
+        MapNeeds { output, settings, reads, shading, ground_casts, pixels, is_exact: true }
+    }
+
+    /// What pictures of a kind and of so many pixels call for: of the kind that was drawn last what the last one took, else the most
+    /// that one may take.
+    pub fn plan_of(&self, stage: &Stage, output: Output, pixels: u64) -> DrawPlan {
+        let most = || MapNeeds::most(stage, &self.shadow_scene, &self.settings, self.reads, output, pixels);
+        self.last.filter(|last| last.output == output).unwrap_or_else(most).plan(&self.scene.needs)
+    }
+
     /// What has been built so far, and the passes of the last frame.
     pub fn census(&self) -> Census {
-        let surfaces = || self.programs.keys().filter_map(ProgramKey::batch);
+        let surfaces = self.programs.keys().filter_map(ProgramKey::batch);
+        let scene = Census::of_scene(&self.scene).with_pipelines(self.programs.len(), surfaces);
+        let read_slots = self.read_group.as_ref().map(|(_, slots)| *slots);
+        let views = self.bindings.view_count();
         let masks = || self.mask.iter().flatten().chain(&self.flat);
         let mask_bytes: u64 = masks().map(Mask::bytes).sum();
         Census {
             passes: self.report.passes,
-            pipelines: self.programs.len(),
-            alpha_test_pipelines: surfaces().filter(|key| key.surface.is_cut).count(),
-            two_sided_pipelines: surfaces().filter(|key| key.is_two_sided).count(),
             targets: 2 * self.targets.len(),
+            bind_groups: scene.bind_groups + usize::from(read_slots.is_some()) + views,
+            bindings: scene.bindings + read_slots.unwrap_or(0) + views,
             shadow_pipelines: self.programs.keys().filter(|key| key.is_shadow()).count(),
             shadow_maps: self.depths.as_ref().map_or(0, |depths| depths.layers.len()),
             shadow_masks: masks().count(),
             shadow_bytes: self.depths.as_ref().map_or(0, Depths::bytes) + mask_bytes,
-            ..Census::of_scene(&self.scene)
+            ..scene
         }
     }
+}
+
+/// Whether a sampler compares, which may or may not filter.
+fn compares(settings: &MapSettings) -> bool {
+    !settings.gathers() && !matches!(settings.variant, Variant::Plain | Variant::Planar)
+}
+
+/// The most that pictures of a kind and of so many pixels may call for, whatever the view and the moment, of a stage of which
+/// nothing has been built.
+pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: u64) -> DrawPlan {
+    let scene = ShadowScene::new(stage);
+    // Whether the sampler filters changes no count.
+    let halfway = compares(settings).then_some(0.5);
+    let reads = Reads::new(settings, scene.ground.height_m.is_some(), halfway);
+    let needs = MapNeeds::most(stage, &scene, settings, reads, output, pixels);
+    needs.plan(&SceneNeeds::new(stage, Some(&scene.ground)))
 }

@@ -5,9 +5,10 @@ use super::super::renderer::Output;
 use super::super::scene::depth_key;
 use super::super::stopwatch::Phase;
 use super::super::target::{depths_drawn_into, drawn_into};
+use super::MapRenderer;
+use super::needs::MapNeeds;
 use super::programs::{ProgramKey, Sun, caster_key};
 use super::targets::{Mask, blur_group, blur_layout};
-use super::{MapRenderer, SunNow};
 use crate::shadow_maps::{MapProjection, Variant};
 
 impl MapRenderer<'_> {
@@ -113,7 +114,7 @@ impl MapRenderer<'_> {
         }
     }
 
-    pub(super) fn surface_pass(&mut self, encoder: &mut wgpu::CommandEncoder, output: Output, now: &SunNow) {
+    pub(super) fn surface_pass(&mut self, encoder: &mut wgpu::CommandEncoder, output: Output, needs: &MapNeeds) {
         self.report.passes += 1;
         let clear = wgpu::LoadOp::Clear(output.background());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -125,9 +126,9 @@ impl MapRenderer<'_> {
         });
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
         for batch in &self.scene.batches {
-            let key = self.surface_program_key(output, now, &batch.key);
+            let key = needs.surface_program_key(&self.scene.needs, &batch.key);
             if let ProgramKey::Surface(_, Sun::Maps | Sun::Mask | Sun::Flat, _) = key {
-                pass.set_bind_group(3, self.read_group.as_ref(), &[]);
+                pass.set_bind_group(3, self.read_group.as_ref().map(|(group, _)| group), &[]);
             }
             match output {
                 Output::Visibility => self.scene.draw_without_page(&mut pass, batch, &self.programs[&key]),

@@ -4,8 +4,8 @@ use super::super::batch::BatchKey;
 use super::super::program::{Program, Source, State, depth_state};
 use super::super::renderer::{Output, sky_program, surface_source, surface_state};
 use super::super::target::DEPTH_FORMAT;
+use super::MapRenderer;
 use super::targets::{MASK_FORMAT, blur_layout};
-use super::{MapRenderer, SunNow};
 use crate::shadow_maps::Variant;
 use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowViews, SurfaceVariant};
 
@@ -65,35 +65,6 @@ pub fn caster_key(key: &BatchKey) -> BatchKey {
 }
 
 impl MapRenderer<'_> {
-    /// What is read of the sun for a batch.
-    pub(super) fn sun_of(&self, output: Output, now: &SunNow, key: &BatchKey) -> Sun {
-        match (now, self.settings.variant) {
-            _ if output == Output::LampVisibility => Sun::Down,
-            (SunNow::Down, _) => Sun::Down,
-            (SunNow::Open, _) => Sun::Open,
-            (SunNow::Shaded(_), _) if !self.settings.means.sampling => Sun::Open,
-            (SunNow::Shaded(_), Variant::Planar) => {
-                if key.is_ground {
-                    Sun::Flat
-                } else {
-                    Sun::Open
-                }
-            }
-            (SunNow::Shaded(_), Variant::Ground) if key.is_ground => Sun::Mask,
-            (SunNow::Shaded(_), _) => Sun::Maps,
-        }
-    }
-
-    /// The key of the program that shades a batch.
-    pub(super) fn surface_program_key(&self, output: Output, now: &SunNow, key: &BatchKey) -> ProgramKey {
-        let sun = self.sun_of(output, now, key);
-        let key = match output {
-            Output::Visibility => BatchKey { page: 0, texture: None, ..*key },
-            Output::Lit | Output::LampVisibility => self.scene.surface_key(key),
-        };
-        ProgramKey::Surface(output, sun, BatchKey { is_ground: false, ..key })
-    }
-
     /// Makes a program.
     pub(super) fn program(&self, key: &ProgramKey) -> Program {
         let gpu = self.gpu;

@@ -4,7 +4,7 @@ use super::super::device::{Gpu, GpuError};
 use super::super::maps::texture;
 use super::super::target::DEPTH_FORMAT;
 use super::probe::comparison_sampler;
-use crate::shadow_maps::{MOST_MAPS, MapProjection};
+use crate::shadow_maps::{MOST_MAPS, MapProjection, MapSettings, Variant};
 use bytemuck::Zeroable;
 use glam::Vec3;
 use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowViewUniform};
@@ -110,6 +110,35 @@ pub struct Reads {
     pub has_flat_mask: bool,
 }
 
+impl Reads {
+    /// What surfaces read under shadow maps; `halfway` is what a comparison sampler reads between light and shade, where one was asked.
+    pub fn new(settings: &MapSettings, has_ground: bool, halfway: Option<f32>) -> Self {
+        let filters = |halfway: f32| settings.means.filtering && halfway > 0.0 && halfway < 1.0;
+        Self {
+            has_depths: settings.variant != Variant::Planar,
+            tap: match halfway.map(filters) {
+                Some(true) => ShadowTap::Filtered,
+                Some(false) => ShadowTap::Nearest,
+                None if settings.gathers() => ShadowTap::Gathered,
+                None => ShadowTap::Manual,
+            },
+            has_mask: settings.variant == Variant::Ground && has_ground,
+            has_flat_mask: settings.variant == Variant::Planar,
+        }
+    }
+
+    /// Whether maps are read through a sampler.
+    pub fn has_sampler(&self) -> bool {
+        self.has_depths && self.tap != ShadowTap::Manual
+    }
+
+    /// Slots of the bindings.
+    pub fn slots(&self) -> usize {
+        let flat = usize::from(self.has_flat_mask);
+        flat + 2 * usize::from(self.has_depths) + usize::from(self.has_sampler()) + 2 * usize::from(self.has_mask)
+    }
+}
+
 impl Bindings {
     /// Layouts for what is read.
     pub fn new(gpu: &Gpu, reads: &Reads) -> Self {
@@ -166,14 +195,14 @@ impl Bindings {
         }
     }
 
-    /// What surfaces read, bound.
+    /// What surfaces read, bound, and in how many slots.
     pub fn read(
         &self,
         gpu: &Gpu,
         depths: Option<&Depths>,
         mask: Option<&Mask>,
         flat: Option<&Mask>,
-    ) -> wgpu::BindGroup {
+    ) -> (wgpu::BindGroup, usize) {
         use wgpu::BindingResource::{Sampler, TextureView};
         let mut entries = Vec::new();
         entries.extend(flat.map(|flat| (0, TextureView(&flat.view))));
@@ -184,7 +213,13 @@ impl Bindings {
         if let (Some(mask), Some(linear)) = (mask, &self.linear) {
             entries.extend([(3, TextureView(&mask.view)), (4, Sampler(linear))]);
         }
-        bind_group(gpu, "shadow maps", &self.read_layout, entries)
+        let slots = entries.len();
+        (bind_group(gpu, "shadow maps", &self.read_layout, entries), slots)
+    }
+
+    /// Number of maps' matrices that are bound, each alone.
+    pub fn view_count(&self) -> usize {
+        self.views.len()
     }
 
     /// Writes the maps' matrices.

@@ -45,9 +45,7 @@ impl CasterBuffers {
 
     /// Layout of the bindings of what a light throws. All layouts of the same bindings are alike.
     pub fn layout(&self, gpu: &Gpu, light: VolumeLight) -> wgpu::BindGroupLayout {
-        let (is_found, has_reaches) = (self.found.is_some(), light == VolumeLight::LampWithRange);
-        let used = [(0, true), (1, has_reaches), (2, is_found), (3, is_found), (4, is_found)];
-        let entry = |(binding, _): (u32, bool)| wgpu::BindGroupLayoutEntry {
+        let entry = |binding: u32| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::VERTEX,
             ty: wgpu::BindingType::Buffer {
@@ -57,9 +55,21 @@ impl CasterBuffers {
             },
             count: None,
         };
-        let entries: Vec<_> = used.into_iter().filter(|(_, is_used)| *is_used).map(entry).collect();
+        let entries: Vec<_> = self.places(light).map(entry).collect();
         let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("volumes"), entries: &entries };
         gpu.device.create_bind_group_layout(&descriptor)
+    }
+
+    /// Places of bindings.
+    fn places(&self, light: VolumeLight) -> impl Iterator<Item = u32> + use<> {
+        let (is_found, has_reaches) = (self.found.is_some(), light == VolumeLight::LampWithRange);
+        let used = [(0, true), (1, has_reaches), (2, is_found), (3, is_found), (4, is_found)];
+        used.into_iter().filter(|(_, is_used)| *is_used).map(|(binding, _)| binding)
+    }
+
+    /// Slots of the bindings of what a light throws.
+    pub fn slots(&self, light: VolumeLight) -> usize {
+        self.places(light).count()
     }
 
     /// Number of buffers, and their bytes.
@@ -67,6 +77,15 @@ impl CasterBuffers {
         let found = self.found.iter().flat_map(|found| [&found.walls, &found.triangles]);
         let all: Vec<&wgpu::Buffer> = std::iter::once(&self.points).chain(found).collect();
         (all.len(), all.iter().map(|buffer| buffer.size()).sum())
+    }
+}
+
+/// Number of the buffers that all lights share, and the most bytes that they may have.
+pub fn size_of(casters: &Casters, mode: Mode) -> (usize, u64) {
+    let points = 12 * casters.points_m.len().max(1) as u64;
+    match mode == Mode::Gpu && !casters.triangles.is_empty() {
+        true => (3, points + 16 * casters.uses.len() as u64 + 12 * casters.triangles.len() as u64),
+        false => (1, points),
     }
 }
 
@@ -127,6 +146,8 @@ pub struct Run {
     pub indices: Option<wgpu::Buffer>,
     /// Bindings.
     pub group: wgpu::BindGroup,
+    /// Slots of these.
+    pub slots: usize,
 }
 
 impl Thrown {
@@ -205,8 +226,8 @@ impl Thrown {
         let indices = (!contents.is_empty()).then(|| gpu.device.create_buffer_init(&descriptor));
         self.buffers.0 += usize::from(indices.is_some());
         self.buffers.1 += contents.len() as u64;
-        let group = group(gpu, &buffers.layout(gpu, self.kind.0), &[(0, Some(&buffers.points)), (1, reaches)]);
-        Ok(Run { parts: volumes.parts, indices, group })
+        let (group, slots) = group(gpu, &buffers.layout(gpu, self.kind.0), &[(0, Some(&buffers.points)), (1, reaches)]);
+        Ok(Run { parts: volumes.parts, indices, group, slots })
     }
 
     /// Silhouettes to be found by the vertex shader, from how each triangle counts.
@@ -239,7 +260,8 @@ impl Thrown {
             (3, Some(&found.triangles)),
             (4, Some(&packed)),
         ];
-        Ok(Run { parts: parts.collect(), indices: None, group: group(gpu, &buffers.layout(gpu, self.kind.0), &bound) })
+        let (group, slots) = group(gpu, &buffers.layout(gpu, self.kind.0), &bound);
+        Ok(Run { parts: parts.collect(), indices: None, group, slots })
     }
 
     /// Number of buffers, and their bytes.
@@ -272,12 +294,18 @@ fn reaches(casters: &Casters, lamp_m: glam::DVec3, range_m: f64) -> Option<Vec<f
     Some(reaches)
 }
 
-fn group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, buffers: &[(u32, Option<&wgpu::Buffer>)]) -> wgpu::BindGroup {
+/// Buffers, bound, and how many they are.
+fn group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[(u32, Option<&wgpu::Buffer>)],
+) -> (wgpu::BindGroup, usize) {
     let bound = buffers.iter().filter_map(|(binding, buffer)| {
         buffer.map(|buffer| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
     });
     let entries: Vec<_> = bound.collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("volumes"), layout, entries: &entries })
+    let descriptor = wgpu::BindGroupDescriptor { label: Some("volumes"), layout, entries: &entries };
+    (gpu.device.create_bind_group(&descriptor), entries.len())
 }
 
 /// What is drawn at once.

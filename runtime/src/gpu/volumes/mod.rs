@@ -13,11 +13,13 @@
 //! surface that it touches.
 
 mod buffers;
+mod needs;
 mod passes;
 mod programs;
 
 use super::census::Census;
 use super::device::{Gpu, GpuError};
+use super::needs::SceneNeeds;
 use super::program::Program;
 use super::readback;
 use super::renderer::Output;
@@ -26,15 +28,17 @@ use super::stopwatch::{FrameTimes, Stopwatch};
 use super::target::Target;
 use crate::View;
 use crate::light::{Moment, SunDisc, WITHOUT_END};
+use crate::plan::DrawPlan;
 use crate::stage::Stage;
 use crate::volumes::culling::Receivers;
 use crate::volumes::{CasterCounts, Casters, FramePlan, Light, Mode, PlanCounts, Savings};
 use buffers::{CasterBuffers, Draws, Thrown};
 use glam::Vec3;
+use needs::{LightNeeds, VolumeNeeds, added, hard_lights};
 use passes::Ends;
-use programs::{Added, ProgramKey};
+use programs::{Added, ProgramKey, VolumeKey};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 use sunbake_shaders::{HardLight, VolumeUse};
 
@@ -113,7 +117,20 @@ pub struct VolumeRenderer<'g> {
     targets: BTreeMap<Output, Target>,
     stopwatch: Option<Stopwatch>,
     report: FrameReport,
+    /// Lights of the last frame, in their order; suns of a disc are one.
+    last: Vec<Last>,
+    last_output: Option<Output>,
     prepare_seconds: f64,
+}
+
+/// A light of the last frame.
+struct Last {
+    slot: usize,
+    hard: HardLight,
+    added: Added,
+    count: usize,
+    shaded: usize,
+    faces: BTreeSet<VolumeKey>,
 }
 
 /// A light of a frame, with its moment: a sun of several has its own.
@@ -149,6 +166,8 @@ impl<'g> VolumeRenderer<'g> {
             targets: BTreeMap::new(),
             stopwatch: settings.is_timed.then(|| Stopwatch::new(gpu)).flatten(),
             report: FrameReport::default(),
+            last: Vec::new(),
+            last_output: None,
             prepare_seconds,
         })
     }
@@ -243,20 +262,13 @@ impl<'g> VolumeRenderer<'g> {
     /// The lights of a frame, in the order in which they are added.
     fn shining(&self, moment: &Moment, output: Output) -> Vec<Shining> {
         let mut all = Vec::new();
-        let (sun, lamp) = match output {
-            Output::Lit => (HardLight::Sun, HardLight::Lamp),
-            Output::Visibility | Output::LampVisibility => (HardLight::SunGate, HardLight::LampGate),
-        };
+        let [sun, lamp] = hard_lights(output);
         if output != Output::LampVisibility && (output == Output::Visibility || moment.daylight.sun_light != Vec3::ZERO)
         {
             let count = self.settings.sun_samples.max(1);
             let disc = SunDisc::new(moment.sun_direction.as_dvec3(), self.sun_radius_rad);
             let direction = |i| if count == 1 { disc.centre } else { disc.direction(i, count, 0.0) };
-            let added = match (output, count) {
-                (_, 2..) => Added::Share,
-                (Output::Lit, _) => Added::OnTop,
-                _ => Added::Alone,
-            };
+            let added = added(output, count as usize);
             // What is below the horizon lights nothing.
             all.extend((0..count).map(direction).map(|d| d.as_vec3()).filter(|d| d.y > 0.0).map(|towards| Shining {
                 moment: Moment { sun_direction: towards, ..*moment },
@@ -274,7 +286,7 @@ impl<'g> VolumeRenderer<'g> {
                 moment: *moment,
                 light: Light::Lamp { position_m: at.position_m.as_dvec3(), range_m },
                 hard: lamp,
-                added: if output == Output::Lit { Added::OnTop } else { Added::Alone },
+                added: added(output, 1),
                 share: 1.0,
             });
         }
@@ -284,6 +296,7 @@ impl<'g> VolumeRenderer<'g> {
     fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
         let gpu = self.gpu;
         self.report = FrameReport::default();
+        (self.last, self.last_output) = (Vec::new(), Some(output));
         let lights = self.shining(moment, output);
         gpu.checked("building pipelines", || self.prepare(view.size, output, &lights))??;
         gpu.checked("drawing", || {
@@ -327,8 +340,9 @@ impl<'g> VolumeRenderer<'g> {
         let plan_seconds = started.elapsed().as_secs_f64();
         self.note(&shining.light, &plan, &draws, found, plan_seconds);
         let slot = slot(&shining.light);
-        self.prepare_faces(slot, &draws, VolumeUse::Stencil);
         let is_shaded = draws.triangles() > 0;
+        self.note_last(shining, is_shaded);
+        self.prepare_faces(slot, &draws, VolumeUse::Stencil);
         if is_shaded {
             self.volume_pass(encoder, output, slot, &plan, &draws);
         }
@@ -357,6 +371,45 @@ impl<'g> VolumeRenderer<'g> {
                 overlap_seconds,
                 plan_seconds,
             }),
+        }
+    }
+
+    /// Notes a light for the plan of this frame.
+    fn note_last(&mut self, shining: &Shining, is_shaded: bool) {
+        let (slot, hard, added) = (slot(&shining.light), shining.hard, shining.added);
+        match self.last.last_mut().filter(|last| last.slot == slot) {
+            Some(last) => (last.count, last.shaded) = (last.count + 1, last.shaded + usize::from(is_shaded)),
+            None => {
+                let shaded = usize::from(is_shaded);
+                self.last.push(Last { slot, hard, added, count: 1, shaded, faces: BTreeSet::new() });
+            }
+        }
+    }
+
+    /// What pictures of a kind call for: of the kind that was drawn last what the last one took, else the most that one may take.
+    pub fn plan_of(&self, stage: &Stage, output: Output) -> DrawPlan {
+        let needs = match self.last_output {
+            Some(last) if last == output => {
+                let lights = self.last.iter().map(|last| self.needs_of(last)).collect();
+                VolumeNeeds { output, lights, buffers: self.buffers.size(), is_exact: true }
+            }
+            _ => VolumeNeeds::most(stage, &self.casters, &self.settings, output, self.buffers.size()),
+        };
+        needs.plan(&self.scene.needs, &self.casters.counts, &self.settings)
+    }
+
+    fn needs_of(&self, last: &Last) -> LightNeeds {
+        let &Last { slot, hard, added, count, shaded, .. } = last;
+        let thrown = self.thrown[slot].as_ref();
+        LightNeeds {
+            hard,
+            added,
+            count,
+            shaded,
+            faces: last.faces.clone(),
+            runs: thrown.map_or(0, |thrown| thrown.runs.len()),
+            slots: thrown.map_or(0, |thrown| self.buffers.slots(thrown.kind.0)),
+            buffers: thrown.map_or((0, 0), Thrown::size),
         }
     }
 
@@ -412,22 +465,29 @@ impl<'g> VolumeRenderer<'g> {
 
     /// What has been built so far, and the passes of the last frame.
     pub fn census(&self) -> Census {
-        let surfaces = || self.programs.keys().filter_map(ProgramKey::batch);
+        let surfaces = self.programs.keys().filter_map(ProgramKey::batch);
+        let scene = Census::of_scene(&self.scene).with_pipelines(self.programs.len(), surfaces);
         let thrown = self.thrown.iter().flatten().map(Thrown::size);
         let (buffers, bytes) = thrown.fold(self.buffers.size(), |(n, b), (m, c)| (n + m, b + c));
-        let is_stencil = |key: &&ProgramKey| matches!(key, ProgramKey::Volume(_) | ProgramKey::Keep);
+        let runs = || self.thrown.iter().flatten().flat_map(|thrown| &thrown.runs);
         Census {
             passes: self.report.passes,
-            pipelines: self.programs.len(),
-            alpha_test_pipelines: surfaces().filter(|key| key.surface.is_cut).count(),
-            two_sided_pipelines: surfaces().filter(|key| key.is_two_sided).count(),
             targets: 2 * self.targets.len(),
-            stencil_pipelines: self.programs.keys().filter(is_stencil).count(),
+            bind_groups: scene.bind_groups + runs().count(),
+            bindings: scene.bindings + runs().map(|run| run.slots).sum::<usize>(),
+            stencil_pipelines: self.programs.keys().filter(|key| key.is_of_volumes()).count(),
             volume_buffers: buffers,
             volume_bytes: bytes,
-            ..Census::of_scene(&self.scene)
+            ..scene
         }
     }
+}
+
+/// The most that pictures of a kind may call for, whatever the view and the moment, of a stage of which nothing has been built.
+pub fn volumes_plan(stage: &Stage, settings: &VolumeSettings, output: Output) -> DrawPlan {
+    let casters = Casters::new(stage);
+    let needs = VolumeNeeds::most(stage, &casters, settings, output, buffers::size_of(&casters, settings.mode));
+    needs.plan(&SceneNeeds::new(stage, None), &casters.counts, settings)
 }
 
 /// Where what a light throws is kept, and at which place in the lists of names.

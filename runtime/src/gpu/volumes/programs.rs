@@ -3,11 +3,12 @@
 use super::super::batch::BatchKey;
 use super::super::program::{Program, Source, State, depth_state};
 use super::super::renderer::{Output, sky_program, surface_source};
-use super::super::scene::depth_key;
 use super::super::target::{STENCIL_FORMAT, Target};
 use super::buffers::{Draws, Thrown};
+use super::needs::surface_programs;
 use super::{GpuError, Shining, VolumeRenderer};
 use crate::volumes::Part;
+use std::collections::BTreeSet;
 use sunbake_shaders::{Filter, HardLight, PageVariant, VolumeCorners, VolumeLight, VolumeUse};
 
 /// How far faces are moved from the eye: steps of their depth and, in pixels, along their slope. Rasterising moves corners
@@ -47,18 +48,28 @@ impl ProgramKey {
             Self::Sky | Self::Background | Self::Volume(_) | Self::Keep => None,
         }
     }
+
+    /// Whether it draws volumes, or keeps what was counted of them.
+    pub fn is_of_volumes(&self) -> bool {
+        matches!(self, Self::Volume(_) | Self::Keep)
+    }
 }
 
 /// A pipeline over faces of volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct VolumeKey {
-    light: VolumeLight,
-    corners: VolumeCorners,
+    /// Of which light.
+    pub light: VolumeLight,
+    /// Where corners come from.
+    pub corners: VolumeCorners,
     /// [`Part::Walls`] for all parts where corners are listed.
-    part: Part,
-    of: VolumeUse,
-    is_z_pass: bool,
-    is_run: bool,
+    pub part: Part,
+    /// What becomes of pixels.
+    pub of: VolumeUse,
+    /// Whether faces are counted before the surface.
+    pub is_z_pass: bool,
+    /// Whether they are counted in runs.
+    pub is_run: bool,
 }
 
 /// How a light meets what is there.
@@ -94,29 +105,26 @@ impl VolumeRenderer<'_> {
         if self.targets.get(&output).is_none_or(|target| target.size != size) {
             self.targets.insert(output, Target::new(self.gpu, size, output.format(), STENCIL_FORMAT)?);
         }
-        let mut missing: Vec<ProgramKey> = Vec::new();
-        for batch in &self.scene.batches {
-            missing.push(ProgramKey::Depth(depth_key(&batch.key)));
-            if output == Output::Lit {
-                missing.push(ProgramKey::Around(self.scene.surface_key(&batch.key)));
-            }
-            missing.extend(lights.iter().map(|l| ProgramKey::Light(l.hard, l.added, hard_key(&batch.key))));
-        }
-        missing.push(if output == Output::Lit { ProgramKey::Sky } else { ProgramKey::Background });
-        self.build(missing);
+        let kinds = lights.iter().map(|light| (light.hard, light.added));
+        let wanted = surface_programs(&self.scene.needs, output, kinds).collect();
+        self.build(wanted);
         Ok(())
     }
 
     /// Makes the programs over faces that a plan needs and that are not there yet.
     pub(super) fn prepare_faces(&mut self, slot: usize, draws: &Draws, of: VolumeUse) {
         let Some(thrown) = &self.thrown[slot] else { return };
-        let faces = draws.all().map(|(draw, is_z_pass)| volume_key(thrown, draw.part, of, is_z_pass));
+        let faces: Vec<VolumeKey> =
+            draws.all().map(|(draw, is_z_pass)| volume_key(thrown, draw.part, of, is_z_pass)).collect();
+        if let Some(light) = self.last.iter_mut().rfind(|light| light.slot == slot) {
+            light.faces.extend(faces.iter().copied());
+        }
         let keep = (draws.runs.len() > 1 && of == VolumeUse::Stencil).then_some(ProgramKey::Keep);
-        let wanted: Vec<ProgramKey> = faces.map(ProgramKey::Volume).chain(keep).collect();
+        let wanted = faces.into_iter().map(ProgramKey::Volume).chain(keep).collect();
         self.build(wanted);
     }
 
-    fn build(&mut self, wanted: Vec<ProgramKey>) {
+    fn build(&mut self, wanted: BTreeSet<ProgramKey>) {
         for key in wanted {
             if !self.programs.contains_key(&key) {
                 let program = self.program(&key);

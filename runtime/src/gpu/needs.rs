@@ -1,0 +1,141 @@
+//! What a stage's surfaces call for on the GPU, decided before anything is built: [`super::scene::SceneOnGpu`] builds what is
+//! said here, and plans count it.
+
+use super::batch::{BatchKey, TextureKey, by_key};
+use super::census::Census;
+use crate::playback::{ambient_bytes, page_variant};
+use crate::shadow_maps::Ground;
+use crate::stage::Stage;
+use std::collections::BTreeSet;
+use sunbake_shaders::{AmbientModel, PageVariant, Stream};
+
+/// What surfaces, their maps and their textures call for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneNeeds {
+    /// Draws.
+    pub batches: BTreeSet<BatchKey>,
+    /// What casts and is not drawn, where that was asked for.
+    pub hidden: BTreeSet<BatchKey>,
+    /// Maps.
+    pub pages: Vec<PageNeeds>,
+    /// Bits of a stored time.
+    pub bits: u32,
+    /// Whether there is a lamp.
+    pub has_lamp: bool,
+}
+
+/// What a page calls for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageNeeds {
+    /// What programs must know of it.
+    pub variant: PageVariant,
+    /// Its texels.
+    pub texels: u64,
+}
+
+impl SceneNeeds {
+    /// What a stage calls for; given its ground, as batches of their own, and with what casts and is not drawn.
+    pub fn new(stage: &Stage, ground: Option<&Ground>) -> Self {
+        Self::of(stage, by_key(stage, ground).into_keys())
+    }
+
+    /// What a stage calls for whose surfaces are drawn in these batches.
+    pub fn of(stage: &Stage, keys: impl Iterator<Item = BatchKey>) -> Self {
+        let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
+        let page = |maps| PageNeeds {
+            variant: page_variant(maps, stage.bits, radius_rad),
+            texels: u64::from(maps.width) * u64::from(maps.height),
+        };
+        let (hidden, batches) = keys.partition(|key| key.is_hidden);
+        Self {
+            batches,
+            hidden,
+            pages: stage.pages.iter().map(page).collect(),
+            bits: stage.bits.count(),
+            has_lamp: stage.lamp.is_some(),
+        }
+    }
+
+    /// Everything that has vertices.
+    pub fn surfaces(&self) -> impl Iterator<Item = &BatchKey> {
+        self.batches.iter().chain(&self.hidden)
+    }
+
+    /// How a batch's page is read.
+    pub fn variant(&self, key: &BatchKey) -> &PageVariant {
+        &self.pages[key.page as usize].variant
+    }
+
+    /// The key of a batch's program: pages that programs read alike share one.
+    pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
+        let variant = self.variant(key);
+        let page = self.pages.iter().position(|page| page.variant == *variant).unwrap_or(0) as u32;
+        BatchKey { page, texture: None, ..*key }
+    }
+
+    /// Base colour textures with their samplers.
+    pub fn textures(&self) -> BTreeSet<TextureKey> {
+        self.surfaces().filter_map(|key| key.texture).collect()
+    }
+
+    /// Vertex buffers.
+    pub fn streams(&self) -> BTreeSet<Stream> {
+        let of_key = |key: &BatchKey| {
+            let texture = key.surface.is_textured.then_some(Stream::Texture);
+            let color = key.surface.has_vertex_color.then_some(Stream::Color);
+            [Some(Stream::Position), Some(Stream::Surface), texture, color]
+        };
+        self.surfaces().flat_map(of_key).flatten().collect()
+    }
+
+    /// Whether some page wants the sky in spherical harmonics.
+    pub fn has_sky(&self) -> bool {
+        self.pages.iter().any(|page| page.variant.ambient == AmbientModel::Sky)
+    }
+
+    /// Counts of all of that, without programs, passes and targets.
+    pub fn census(&self) -> Census {
+        let textures = self.textures();
+        let images: BTreeSet<usize> = textures.iter().map(|key| key.image).collect();
+        let slots = || self.pages.iter().map(PageNeeds::slots).filter(|&slots| slots > 0);
+        let of_frame = 2 + usize::from(self.has_lamp) + usize::from(self.has_sky());
+        Census {
+            time_textures: self.pages.iter().map(PageNeeds::time_textures).sum(),
+            lamp_bindings: usize::from(self.has_lamp),
+            ambient_textures: self.pages.iter().map(PageNeeds::ambient_textures).sum(),
+            sky_bindings: usize::from(self.has_sky()),
+            base_color_textures: images.len(),
+            vertex_buffers: self.streams().len(),
+            bind_groups: 1 + slots().count() + textures.len(),
+            bindings: of_frame + slots().sum::<usize>() + 2 * textures.len(),
+            draws: self.batches.len(),
+            map_bytes: self.pages.iter().map(|page| page.bytes(self.bits)).sum(),
+            ..Census::default()
+        }
+    }
+}
+
+impl PageNeeds {
+    fn time_textures(&self) -> usize {
+        2 * (usize::from(self.variant.layer_count() > 0) + usize::from(self.variant.lamp_layer_count > 0))
+    }
+
+    fn ambient_textures(&self) -> usize {
+        match self.variant.ambient {
+            AmbientModel::Hemisphere => 0,
+            AmbientModel::Openness | AmbientModel::Sky => 1,
+            AmbientModel::Bent => 2,
+        }
+    }
+
+    /// Each texture has a slot.
+    fn slots(&self) -> usize {
+        self.time_textures() + self.ambient_textures()
+    }
+
+    fn bytes(&self, bits: u32) -> u64 {
+        // A layer is two textures of four times.
+        let of_times = u64::from(self.variant.layer_count() + self.variant.lamp_layer_count) * u64::from(bits);
+        self.texels * (of_times + ambient_bytes(&self.variant))
+    }
+}
