@@ -148,7 +148,13 @@ fn a_lamp_costs_the_sets_that_have_one() {
     let with = stage(true, 0.1, Bits::Sixteen);
     let page = &with.pages[0];
     let lamp_bytes = page.lamp.as_ref().unwrap().len() as u64 * u64::from(page.width) * u64::from(page.height) * 16;
-    let expected = Census { lamp_bindings: 1, time_textures: 4, map_bytes: without.map_bytes + lamp_bytes, ..without };
+    let expected = Census {
+        lamp_bindings: 1,
+        time_textures: 4,
+        bindings: without.bindings + 3,
+        map_bytes: without.map_bytes + lamp_bytes,
+        ..without
+    };
     assert_eq!(census(&with), expected);
     let alone = census(&stage(false, 0.1, Bits::Sixteen));
     assert_eq!((alone.lamp_bindings, alone.time_textures, alone.map_bytes), (1, 2, lamp_bytes));
