@@ -55,6 +55,7 @@ function showLegend() {
     return tick;
   });
   element("scale").replaceChildren(...ticks);
+  element("scale").style.setProperty("--heat", HEAT_STOPS.map((stop) => `rgb(${stop.join(" ")})`).join());
 }
 
 function showDivider() {
@@ -153,7 +154,8 @@ let playing;
 function play() {
   const isStopped = playing === undefined;
   clearInterval(playing);
-  playing = isStopped ? setInterval(() => change({ time: (state.time + 1) % report.times.length }), PLAY_STEP_MS) : undefined;
+  const step = () => change({ time: (state.time + 1) % report.times.length });
+  playing = isStopped ? setInterval(step, PLAY_STEP_MS) : undefined;
   element("play").setAttribute("aria-pressed", isStopped);
   element("play").textContent = isStopped ? "Stop" : "Play";
 }
@@ -196,7 +198,8 @@ function wireStage() {
 function moveByKey(event) {
   const step = KEY_STEPS[Number(event.shiftKey)];
   const { split } = state;
-  const places = { ArrowLeft: split - step, ArrowDown: split - step, ArrowRight: split + step, ArrowUp: split + step, Home: 0, End: 1 };
+  const [less, more] = [split - step, split + step];
+  const places = { ArrowLeft: less, ArrowDown: less, ArrowRight: more, ArrowUp: more, Home: 0, End: 1 };
   if (!(event.key in places) || hasModifier(event)) return;
   event.preventDefault();
   moveDivider(places[event.key]);

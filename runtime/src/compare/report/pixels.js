@@ -53,7 +53,7 @@ function heat(share) {
   return HEAT_STOPS[low].map((code, k) => Math.round(code + (HEAT_STOPS[low + 1][k] - code) * (place - low)));
 }
 
-/** How far two pictures of visibility lie apart. Small differences are lifted by the sRGB curve, so that they can be seen. */
+/** How far two pictures of visibility lie apart. The sRGB curve lifts small differences, so that they can be seen. */
 function heatPicture(a, b, gain) {
   const colors = Array.from({ length: 256 }, (_, step) => heat(srgbFromLinear(Math.min((gain * step) / 255, 1))));
   const codes = new Uint8ClampedArray(a.length);

@@ -192,7 +192,9 @@ const dividedAt = () => Math.round(width * (state.mode === "difference" ? 1 : st
 function paint() {
   const context = element("canvas").getContext("2d");
   const x = dividedAt();
-  const put = (codes, from, to) => codes && to > from && context.putImageData(new ImageData(codes, width), 0, 0, from, 0, to - from, height);
+  const put = (codes, from, to) => {
+    if (codes && to > from) context.putImageData(new ImageData(codes, width), 0, 0, from, 0, to - from, height);
+  };
   context.clearRect(0, 0, width, height);
   put(shown.codes.left, 0, x);
   put(shown.codes.right, x, width);
