@@ -2,6 +2,7 @@
 
 mod agreement;
 pub mod ambient;
+pub mod browser;
 pub mod engines;
 mod oracle;
 pub mod paths;

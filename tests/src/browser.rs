@@ -1,0 +1,116 @@
+//! A report in a real browser: a probe works the page as a reader would, and tells what it found.
+//!
+//! Chromium prints a page's document once it is loaded. The probe is two scripts within the page: one in front keeps it
+//! from being taken for loaded, one at the end works the controls and leaves its verdict in the document. What is probed is
+//! a copy; the page itself is left as it is, its content policy included.
+
+use serde::Deserialize;
+use std::ffi::OsString;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+const WATCH: &str = include_str!("browser/watch.js");
+const PROBE: &str = concat!(include_str!("browser/hands.js"), include_str!("browser/probe.js"));
+
+/// How long the probe may take. A page that hangs is printed then, without a verdict.
+const LIMIT_S: u64 = 180;
+/// What Chromium itself may take beyond that.
+const GRACE_S: u64 = 60;
+/// A narrow window, in which a page is most likely to be too wide. Chromium makes none narrower.
+const WINDOW: &str = "--window-size=500,900";
+
+/// What a probe found.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Verdict {
+    /// What is wrong with the page; empty is good.
+    pub problems: Vec<String>,
+    /// Single checks made.
+    pub checks: usize,
+    /// Pictures of the report that decoded with the stated size.
+    pub pictures: usize,
+    /// Options chosen, on both sides together.
+    pub options: usize,
+    /// Moments shown: cameras times times of day.
+    pub moments: usize,
+    /// Columns sorted by.
+    pub columns: usize,
+    /// Rows clicked.
+    pub rows: usize,
+    /// SVG drawings on the page.
+    pub plots: usize,
+    /// Pictures compared with what the page says they must be.
+    pub twins: usize,
+}
+
+/// Works a report in Chromium. Panics with advice where there is none.
+pub fn probe(report: &Path) -> Verdict {
+    let page = std::fs::read_to_string(report).unwrap_or_else(|error| panic!("{}: {error}", report.display()));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let probed = folder.path().join("probed.html");
+    std::fs::write(&probed, with_probe(&page)).expect("a folder to write in");
+    let document = printed(&probed, folder.path());
+    verdict_in(&document).unwrap_or_else(|| panic!("{}: the probe did not end within {LIMIT_S} s", report.display()))
+}
+
+/// A page with the probe in it: in front of all other scripts, and behind them.
+fn with_probe(page: &str) -> String {
+    let head = page.find("<head>").expect("a report has a head") + "<head>".len();
+    let end = page.rfind("</body>").expect("a report has a body");
+    let watch = format!("<script>{WATCH}</script>");
+    let probe = format!("<script type=\"module\">{PROBE}</script>");
+    [&page[..head], &watch, &page[head..end], &probe, &page[end..]].concat()
+}
+
+fn verdict_in(document: &str) -> Option<Verdict> {
+    let (_, after) = document.rsplit_once("<pre id=\"verdict\">")?;
+    let (text, _) = after.split_once("</pre>")?;
+    let json = text.replace("&lt;", "<").replace("&gt;", ">").replace("&nbsp;", "\u{a0}").replace("&amp;", "&");
+    Some(serde_json::from_str(&json).unwrap_or_else(|error| panic!("{error} in the verdict {json}")))
+}
+
+/// The document that a page has become once it is loaded.
+fn printed(page: &Path, folder: &Path) -> String {
+    let document = folder.join("document.html");
+    let chromium = find_chromium();
+    let mut command = Command::new(&chromium);
+    // Root has no sandbox; the page is ours.
+    command.args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", WINDOW, "--dump-dom"]);
+    command.arg(format!("--timeout={}", LIMIT_S * 1000)).arg(flag("--user-data-dir=", &folder.join("profile")));
+    command.arg(flag("file://", page)).stdin(Stdio::null()).stderr(Stdio::null());
+    command.stdout(File::create(&document).expect("a folder to write in"));
+    let mut child = command.spawn().unwrap_or_else(|error| panic!("{}: {error}", chromium.display()));
+    let start = Instant::now();
+    while child.try_wait().expect("a child can be waited for").is_none() {
+        if start.elapsed() > Duration::from_secs(LIMIT_S + GRACE_S) {
+            child.kill().expect("a child can be killed");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let bytes = std::fs::read(&document).expect("what was written");
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+fn flag(name: &str, path: &Path) -> OsString {
+    let mut flag = OsString::from(name);
+    flag.push(path);
+    flag
+}
+
+/// `CHROMIUM`, or the first browser of its kind on the path.
+fn find_chromium() -> OsString {
+    let answers = |name: &OsString| {
+        let version = Command::new(name).arg("--version").stdin(Stdio::null()).output();
+        version.is_ok_and(|output| output.status.success())
+    };
+    let asked = std::env::var_os("CHROMIUM");
+    let usual = ["chromium", "chromium-browser", "google-chrome"].map(OsString::from);
+    let names = asked.map_or_else(|| usual.to_vec(), |name| vec![name]);
+    names.iter().find(|name| answers(name)).cloned().unwrap_or_else(|| {
+        panic!(
+            "none of {names:?} runs, and reports are tested in a browser: run the tests by tests/run, install Chromium \
+             (Debian: chromium), or name one in CHROMIUM"
+        )
+    })
+}
