@@ -48,9 +48,8 @@ function showLegend() {
   const { mode, gain } = state;
   element("legend").hidden = mode === "picture" || mode === "visibility";
   const ticks = LEGEND.map((step) => {
-    const tick = document.createElement("span");
     const isOpen = gain > 1 && step === 1;
-    tick.textContent = `${isOpen ? "≥\u202f" : ""}${Number((step / gain).toPrecision(2))}`;
+    const tick = made("span", `${isOpen ? "≥\u202f" : ""}${Number((step / gain).toPrecision(2))}`);
     tick.style.left = `${100 * srgbFromLinear(step)}%`;
     return tick;
   });
@@ -82,18 +81,17 @@ const rounded = (x) => (isNumber(x) ? String(Number(x.toPrecision(3))) : "–");
 const percentage = (x) => (isNumber(x) ? `${Number((100 * x).toPrecision(3))}%` : "–");
 const milliseconds = (x) => (isNumber(x) ? `${rounded(x)} ms` : "–");
 
+const made = (tag, textContent) => Object.assign(document.createElement(tag), { textContent });
+
 function showNumbers(side) {
   const choice = state[side];
   const frames = report.techniques[choice]?.frames ?? [];
   const { error, frame_ms: frame } = frames.find((f) => f.camera === state.camera && f.time === state.time) ?? {};
-  const name = `${side === "left" ? "Left" : "Right"}: ${nameOf(choice).replaceAll(":", ":\u200b")}`;
   const numbers = [rounded(error?.mean), rounded(error?.p99), percentage(error?.wrong_share), milliseconds(frame)];
-  const cells = [name, ...numbers].map((text, i) => {
-    const cell = document.createElement(i ? "td" : "th");
-    if (!i) cell.scope = "row";
-    cell.textContent = text;
-    return cell;
-  });
+  const heading = made("th", side === "left" ? "Left" : "Right");
+  heading.scope = "row";
+  heading.append(made("span", `: ${nameOf(choice).replaceAll(":", ":\u200b")}`));
+  const cells = [heading, ...numbers.map((text) => made("td", text))];
   element("root").querySelector(`tr[data-side=${side}]`).replaceChildren(...cells);
 }
 
@@ -145,6 +143,7 @@ function wireTime() {
   element("time").max = report.times.length - 1;
   element("time").addEventListener("input", ({ target }) => change({ time: Number(target.value) }));
   element("play").addEventListener("click", play);
+  element("time").disabled = element("play").hidden = report.times.length < 2;
 }
 
 const moveTime = (by) => change({ time: clamp(state.time + by, 0, report.times.length - 1) });
