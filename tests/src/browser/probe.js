@@ -158,13 +158,20 @@ async function tableSortsAndChooses() {
     for (const turn of ["first", "second"]) sortBy(table, column, heading, turn);
     counts.columns += 1;
   }
-  for (const row of document.querySelectorAll("tr[data-technique]")) {
-    row.cells[0].click();
-    await settled();
-    expect(control("left").value === row.dataset.technique, `a click on row ${row.dataset.technique} did not choose it`);
-    await expectShown("left", `row ${row.dataset.technique} clicked`);
+  for (const row of rowsOf(table)) {
+    await choosesByClick(row.cells[0], row.dataset.technique, "row");
     counts.rows += 1;
   }
+  const marks = document.querySelectorAll("svg [data-technique]");
+  for (const mark of marks) await choosesByClick(mark, mark.dataset.technique, "mark");
+}
+
+async function choosesByClick(element, technique, kind) {
+  await enter(control("left"), "reference");
+  element.dispatchEvent(new MouseEvent("click", { bubbles: true }));
+  await settled();
+  expect(control("left").value === technique, `a click on the ${kind} of ${technique} does not choose it`);
+  await expectShown("left", `the ${kind} of ${technique} clicked`);
 }
 
 const rowsOf = (table) => [...table.querySelectorAll("tr[data-technique]")];
