@@ -25,6 +25,7 @@ pub mod progress;
 pub mod report;
 pub mod scene;
 pub mod settings;
+pub mod signals;
 pub mod sun;
 #[doc(hidden)]
 pub mod testing;

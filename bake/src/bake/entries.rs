@@ -22,6 +22,7 @@ pub(super) fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSet
             file: SCENE_FILE.into(),
             centre_m: scene.centre_m.to_array(),
             texels_per_metre: atlas.texels_per_metre,
+            sha256: None,
         },
         path: path.as_ref().map(path_entry),
         lamp: lamp.as_ref().map(lamp_entry),

@@ -9,7 +9,7 @@ mod pages;
 
 use crate::ambient::AmbientEngine;
 use crate::atlas::AtlasError;
-use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, StageSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge, Occlusion};
 use crate::lamp::{self, LampError, LampPath};
@@ -248,6 +248,7 @@ fn bake_prepared(
         ambient.vertices = vertices;
     }
     let manifest = Manifest {
+        scene: SceneEntry { sha256: Some(scene::sha256(&written.bytes)), ..manifest.scene },
         stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,
         instances: instance_entries(scene, atlas, &written),

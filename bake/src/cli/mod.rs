@@ -6,7 +6,6 @@ mod cost;
 mod exit;
 mod inspect;
 mod out;
-mod signals;
 mod summary;
 mod terminal;
 mod texels;

@@ -1,11 +1,11 @@
 //! Progress on a terminal, and nowhere else; and the ear that hears Ctrl-C.
 
-use super::signals::Signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
 use sunbake::progress::{Progress, Stage};
+use sunbake::signals::Signals;
 
 /// Draws one line on stderr while a bake runs, and stops the bake at a signal.
 #[derive(Debug)]

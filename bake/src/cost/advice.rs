@@ -63,7 +63,7 @@ fn density(report: &CostReport) -> Option<String> {
     let place = sweep.rows.iter().position(|row| row.name == from.name)?;
     let finer = sweep.rows.get(place + 1).and_then(|row| against(sweep, &row.name, from));
     let coarser = place.checked_sub(1).and_then(|k| against(sweep, &sweep.rows[k].name, from));
-    let knee = sweep.knee.as_ref().map(|name| format!("The knee lies at `{name}`: beyond it time buys least."));
+    let knee = sweep.knee.as_ref().map(|name| format!("The knee of the curve lies at `{name}`."));
     let told: Vec<String> = [finer, coarser, knee].into_iter().flatten().collect();
     (!told.is_empty()).then(|| told.join(" "))
 }
@@ -85,14 +85,15 @@ fn blame(report: &CostReport) -> Option<String> {
     let bits = of("bits", "--bits 16")?;
     let rest = match layers + lane {
         known if known < 0.5 * all => {
-            "most of the rest comes of texels that are wider than what they show, so more of them (`--size`, `--texels-per-metre`) help most"
+            "most of it comes of texels that are wider than what they show, so more of them (`--size`, `--texels-per-metre`) help most"
         }
-        _ if layers > lane => "so more layers (`--layers`) help most",
-        _ => "so more lanes (`--lanes`) help most",
+        _ if layers > lane && layers > 2.0 * bits => "more layers (`--layers`) help most",
+        _ if layers > lane => "little is left to gain",
+        _ => "more lanes (`--lanes`) help most",
     };
     Some(format!(
-        "Of the {} minutes of `--preset standard`, four layers of 16 bits account for about {} (rounding alone for {}) and taking the sun for a line \
-         for {}; {rest}.",
+        "`--preset standard` is off by {} minutes; of single texels, four layers of 16 bits are by {} (rounding alone by {}), and the sun \
+         taken for a line by {}, part of which filtering evens out: {rest}.",
         plain(all, 2),
         plain(layers, 2),
         plain(bits, 2),
@@ -109,7 +110,7 @@ fn engines(report: &CostReport) -> Option<String> {
     let alike = rays.min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let error = alike.sun_min.as_ref()?;
     Some(format!(
-        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel in the mean, by {} at worst. {}",
+        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel in the mean, by {} at worst.{}",
         with_unit(exact_s, "s"),
         alike.name,
         with_unit(alike.seconds?, "s"),
@@ -126,7 +127,7 @@ fn cheap_bisection(sweep: &Sweep, exact_s: f64) -> Option<String> {
     let best = sweep.rows.iter().filter(faster).min_by(|a, b| mean(a).total_cmp(&mean(b)))?;
     let (seconds, error) = (best.seconds?, best.sun_min?);
     Some(format!(
-        "`{}` takes {} of its time and is wrong by {} minutes.",
+        " `{}` takes {} of its time and is wrong by {} minutes.",
         best.name,
         percent(seconds / exact_s),
         plain(error.mean, 2)
@@ -147,7 +148,7 @@ fn sky(report: &CostReport) -> Option<String> {
         ))
     };
     let told: Vec<String> = [64, 128, 512].into_iter().filter_map(told).collect();
-    (!told.is_empty()).then(|| format!("Ambient occlusion of a texel: {}.", told.join("; ")))
+    (!told.is_empty()).then(|| format!("Ambient occlusion, all texels of the page: {}.", told.join("; ")))
 }
 
 /// A row against another of its sweep, if it was measured.
@@ -156,8 +157,10 @@ fn against(sweep: &Sweep, name: &str, from: &CostRow) -> Option<String> {
     let times = row.seconds? / from.seconds?;
     let bytes = row.gpu_bytes? as f64 / from.gpu_bytes? as f64;
     let sun = change(from.sun_min.as_ref()?, row.sun_min.as_ref()?);
+    let is_predicted = [row, from].iter().any(|row| row.how == How::Sampled);
+    let takes = if is_predicted { "should take" } else { "takes" };
     Some(format!(
-        "`{name}` takes {} the time and {} the bytes of `{}` and {sun}.",
+        "`{name}` {takes} {} the time and {} the bytes of `{}` and {sun}.",
         factor(times),
         factor(bytes),
         from.name

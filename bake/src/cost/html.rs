@@ -1,6 +1,6 @@
 //! The report as a page.
 
-use super::report::{CostReport, CostRow, ErrorEntry, ReferenceEntry, Sweep};
+use super::report::{CostReport, CostRow, ErrorEntry, How, ReferenceEntry, Sweep};
 use crate::report::plot::{self, Axis, Plot, Point, Series};
 use crate::report::{Cell, Column, Row, Table, escape, page, plain, whole, with_unit};
 
@@ -31,14 +31,16 @@ pub fn html(report: &CostReport) -> String {
 fn facts(report: &CostReport) -> String {
     let sun = &report.sun;
     let day = sun.local.as_ref().map_or(String::new(), |[start, end]| format!("{start} to {end}, "));
-    let measured = report.sweeps.iter().flat_map(|sweep| &sweep.rows).filter(|row| row.is_measured()).count();
+    let rows = || report.sweeps.iter().flat_map(|sweep| &sweep.rows);
+    let measured = rows().filter(|row| row.is_measured()).count();
+    let predicted = rows().filter(|row| row.how == How::Sampled).count();
     let all: usize = report.sweeps.iter().map(|sweep| sweep.rows.len()).sum();
     let facts = [
         ("machine", report.machine.text()),
         ("scene", format!("{}, {} triangles", report.scene.file, whole(report.scene.triangles))),
         ("sun", format!("{day}{} minutes", plain(sun.duration_min, 4))),
         ("time", format!("{} of {}", with_unit(report.spent_s, "s"), with_unit(report.budget_s, "s"))),
-        ("rows", format!("{measured} of {all} measured")),
+        ("rows", format!("{measured} of {all} measured, the time of {predicted} of these predicted")),
     ];
     let entry = |(name, value): &(&str, String)| format!("<dt>{name}</dt><dd>{}</dd>", escape(value));
     format!("<dl class=\"facts\">{}</dl>\n", facts.iter().map(entry).collect::<String>())
@@ -89,13 +91,14 @@ fn explanation(report: &CostReport) -> String {
          against what is true at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do \
          not count). True is the exact answer at the point itself, along {lanes} lanes across the sun's disc, compared at {moments} \
          moments of the day; and the openness that {point_rays} rays find. Of a bake for which there was no time, those texels \
-         alone are baked that the points read; its error is as good, and its time is a prediction.</p>\n\
+         alone are baked that the points read; its error of sun is the same, its openness lacks what heals seams, and its time is a prediction.</p>\n\
          <p><b>Knobs at texels</b> are turned one at a time on {measured_texels} of the {page_texels} texels of a page of {edge}, in \
          runs of neighbours; seconds are scaled to all of them. Each is set against the same texel's own best answer (for the \
          sky {texel_rays} rays), so that the error is the knob's alone, and texels too wide are no part of it.</p>\n\
          <p><b>Minutes of sun</b>: for how much of the day the sun is told wrongly, where half of its disc counts half. \
-         Open circles and dots name themselves when pointed at; a ring marks the knee, beyond which time buys least. Click a \
-         heading to sort.</p>\n"
+         Open circles and dots name themselves when pointed at; a ring marks the knee, the point farthest below the straight line between a curve's ends, both axes being \
+         logarithmic. Where a small page cannot hold all charts there are several, so a smaller `--size` may come out as dense as a \
+         larger one. Click a heading to sort.</p>\n"
     )
 }
 

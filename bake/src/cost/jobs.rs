@@ -2,7 +2,8 @@
 //!
 //! Presets first, since they are what most people choose from; then knobs that are cheap to turn; then page sizes and lanes;
 //! then knobs that are dear. A bake is predicted from what its stages take a texel, as far as that is known: engine and sky from the
-//! knobs' sample, the rest from reading the scene and laying it out, and all of it corrected by how the last bake turned out.
+//! knobs' sample, the rest from reading the scene and laying it out, and all of it corrected by how the standard
+//! preset turned out, or else the last bake.
 
 use super::around::around;
 use super::budget::Budget;
@@ -67,8 +68,10 @@ pub(super) struct Jobs<'a> {
     jobs: Vec<Job>,
     /// Bakes that were measured: settings that occur in several sweeps are baked once.
     baked: Vec<(BakeSettings, CostRow)>,
-    /// How much longer a texel of the last bake took than predicted.
+    /// How much longer a texel of the standard preset took than predicted or, before it was baked, one of the last bake.
     correction: f64,
+    /// Whether the standard preset has told.
+    is_settled: bool,
     /// Seconds that a bake takes before its first texel.
     fixed_s: f64,
 }
@@ -90,6 +93,7 @@ impl<'a> Jobs<'a> {
             jobs: planned(settings),
             baked: Vec::new(),
             correction: 1.2,
+            is_settled: false,
             fixed_s: subject.fixed_s,
         };
         jobs.knobs = Knobs::new(subject, budget);
@@ -218,7 +222,9 @@ impl<'a> Jobs<'a> {
     fn correct(&mut self, settings: &BakeSettings, manifest: &Manifest) {
         let StageSeconds { load, unwrap, bvh, .. } = manifest.stats.seconds;
         let took_s = total_s(&manifest.stats.seconds) - load - unwrap - bvh;
-        if let Some(texel_s) = self.texel_s(settings) {
+        let is_standard = *settings == self.settings.preset(BakeSettings::standard);
+        if let Some(texel_s) = self.texel_s(settings).filter(|_| is_standard || !self.is_settled) {
+            self.is_settled |= is_standard;
             let predicted_s = texel_s * manifest.stats.texels as f64;
             self.correction = (took_s / predicted_s.max(1e-9)).clamp(0.2, 5.0);
         }

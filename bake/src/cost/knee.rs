@@ -8,11 +8,16 @@
 
 /// How far from the chord, in the unit square, a knee must be.
 const LEAST_BEND: f64 = 0.05;
+/// By what factor errors must differ along a curve that has one: where time buys nothing there is nothing to stop at.
+const LEAST_RATIO: f64 = 1.25;
 
 /// Index of the knee of (time, error) pairs, if there is one. What is not positive has no logarithm and is passed over.
 pub(super) fn knee(points: &[(f64, f64)]) -> Option<usize> {
     let curve = frontier(points);
     let &[(first, x0, y0), .., (_, x1, y1)] = curve.as_slice() else { return None };
+    if y0 - y1 < LEAST_RATIO.ln() {
+        return None;
+    }
     let below = |&(index, x, y): &(usize, f64, f64)| {
         let (across, down) = ((x - x0) / (x1 - x0), (y0 - y) / (y0 - y1));
         (index, down - across)

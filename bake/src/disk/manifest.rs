@@ -63,6 +63,9 @@ pub struct SceneEntry {
     pub centre_m: [f64; 3],
     /// Texels a metre that the atlas reached.
     pub texels_per_metre: f64,
+    /// SHA-256 of the file, in lower-case hex: with another scene the times are wrong. Sets of before this was kept lack it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
 }
 
 /// The sun's path.

@@ -152,7 +152,12 @@ mod tests {
             version: manifest::VERSION,
             generator: "test".into(),
             source: manifest::SourceEntry { file: "x.glb".into(), sha256: String::new() },
-            scene: manifest::SceneEntry { file: SCENE_FILE.into(), centre_m: [0.0; 3], texels_per_metre: 1.0 },
+            scene: manifest::SceneEntry {
+                file: SCENE_FILE.into(),
+                centre_m: [0.0; 3],
+                texels_per_metre: 1.0,
+                sha256: None,
+            },
             path: None,
             lamp: Some(lamp()),
             ambient: None,

@@ -9,6 +9,7 @@ mod cap;
 mod encode;
 mod evaluate;
 mod lanes;
+mod requantise;
 
 pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_open, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};

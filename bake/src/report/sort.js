@@ -9,7 +9,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
     if (cell.dataset.value !== undefined) return Number(cell.dataset.value);
     return cell.classList.contains("number") ? null : cell.textContent.trim();
   };
-  const order = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b)));
+  const order = (a, b) => (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), "en", { numeric: true }));
   const sort = (column, falls) => {
     const rows = [...body.rows].map((row) => ({ row, key: key(row, column) }));
     const known = rows.filter((entry) => entry.key !== null && entry.key !== "");

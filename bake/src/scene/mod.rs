@@ -36,6 +36,7 @@ pub use geometry::{Geometry, SurfaceTriangle};
 pub use limits::LoadLimits;
 pub use load::load;
 pub use materials::BLEND_CUTOFF;
+pub use resources::sha256;
 pub use shading::ShadingNormals;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.

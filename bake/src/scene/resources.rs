@@ -54,7 +54,7 @@ impl<'a> Fetcher<'a> {
 
     /// SHA-256 of everything fetched so far, in lower-case hex.
     pub fn into_sha256(self) -> String {
-        self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hex(self.hasher)
     }
 
     fn resolve(&self, place: &str, uri: &str) -> Result<PathBuf, LoadError> {
@@ -200,4 +200,13 @@ fn read_buffer<'a>(
         (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
         (None, _) => Err(LoadError::structure(place, "it has no uri, and the file has no binary chunk for it")),
     }
+}
+
+/// SHA-256 in lower-case hex: what a scene that is one file, and refers to no other, is known by.
+pub fn sha256(bytes: &[u8]) -> String {
+    hex(Sha256::new_with_prefix(bytes))
+}
+
+fn hex(hasher: Sha256) -> String {
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }

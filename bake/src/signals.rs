@@ -1,4 +1,4 @@
-//! Ctrl-C and its kin: the bake is asked to stop, and takes back what it made. A second one ends it on the spot.
+//! Ctrl-C and its kin: what runs is asked to stop, and takes back what it made. A second one ends it on the spot.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
