@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::OnceLock;
 use sunbake::disk::manifest::InstanceEntry;
 use sunbake::lamp::LampPath;
-use sunbake::maps::{Bits, PageMaps};
+use sunbake::maps::{Bits, Lane, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
 use sunbake::scene::{Alpha, Geometry, LoadError, LoadLimits, Material, Mesh, Scene, ShadingNormals};
 use sunbake::sun::SunPath;
@@ -81,6 +81,26 @@ pub enum StageError {
     /// The set's scene cannot be read.
     #[error("the set's scene cannot be read: {0}")]
     Scene(#[from] LoadError),
+    /// The set's scene is gone.
+    #[error("{file} is missing from the set (its SHA-256 was {}): put it back, or bake the scene again", sha256.as_deref().unwrap_or("not kept"))]
+    NoScene {
+        /// Where it was.
+        file: String,
+        /// What it was known by, if the set keeps that.
+        sha256: Option<String>,
+    },
+    /// The set's scene is another than was baked.
+    #[error(
+        "{file} is not the scene that the set was baked with: its SHA-256 is {found}, and was {baked}; bake it again"
+    )]
+    Changed {
+        /// Which file.
+        file: String,
+        /// What it is known by now.
+        found: String,
+        /// What it was known by.
+        baked: String,
+    },
     /// The manifest and the scene do not agree.
     #[error("the set's scene and its manifest disagree: {reason}; bake the scene again")]
     Mismatch {
@@ -93,7 +113,15 @@ impl Stage {
     /// Reads a baked set and its scene.
     pub fn read(folder: &Path) -> Result<Self, StageError> {
         let set = sunbake::disk::read::read(folder)?;
-        let scene = sunbake::scene::load(&set.scene_file(), &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+        let (file, baked) = (set.scene_file(), set.manifest.scene.sha256);
+        if !file.is_file() {
+            return Err(StageError::NoScene { file: file.display().to_string(), sha256: baked });
+        }
+        let scene = sunbake::scene::load(&file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+        if let Some(baked) = baked.filter(|baked| *baked != scene.source.sha256) {
+            let (file, found) = (file.display().to_string(), scene.source.sha256);
+            return Err(StageError::Changed { file, found, baked });
+        }
         let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
@@ -162,6 +190,24 @@ impl Stage {
     pub fn best_ambient(&self) -> AmbientModel {
         let models = self.pages.iter().map(|page| page_variant(page, self.bits, 0.0).ambient);
         models.min().unwrap_or_default()
+    }
+
+    /// The same stage with times of 8 bits, rounded again where they have 16.
+    pub fn with_eight_bits(mut self) -> Self {
+        let bits = std::mem::replace(&mut self.bits, Bits::Eight);
+        self.pages = self.pages.into_iter().map(|page| page.with_eight_bits(bits)).collect();
+        self
+    }
+
+    /// The same stage with the middle one of the lanes across the sun's disc, as if it had been baked alone.
+    pub fn with_one_lane(mut self) -> Self {
+        for page in &mut self.pages {
+            let middle = page.lanes.len() / 2;
+            page.lanes.truncate(middle + 1);
+            page.lanes.drain(..middle);
+            page.lanes.iter_mut().for_each(|lane| lane.lane = Lane::CENTRE);
+        }
+        self
     }
 
     /// The same stage without the sun's times: none is read, bound or uploaded.

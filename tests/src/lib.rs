@@ -3,6 +3,7 @@
 mod agreement;
 pub mod ambient;
 pub mod browser;
+pub mod compared;
 pub mod engines;
 mod oracle;
 pub mod paths;

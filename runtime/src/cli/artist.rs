@@ -35,15 +35,26 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
         (_, TechniqueChoice::Truth(_)) | (RendererChoice::Cpu, _) => return Ok(None),
         _ => {}
     }
+    let Some(live) = live(look.technique) else { return open_adapter(look.renderer, quiet) };
     match Gpu::open() {
         Ok(gpu) => Ok(Some(gpu)),
-        Err(GpuError::NoAdapter { reason }) if live(look.technique).is_some() => Err(Failure::unsupported(format!(
-            "{} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), or draw \
+        Err(GpuError::NoAdapter { reason }) => Err(Failure::unsupported(format!(
+            "{live} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), or draw \
              --technique {}",
-            live(look.technique).unwrap_or_default(),
             instead(look.technique)
         ))),
-        Err(GpuError::NoAdapter { .. }) if look.renderer == RendererChoice::Auto => {
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Opens the GPU, if it is wanted and there is one. None: the CPU draws.
+pub fn open_adapter(renderer: RendererChoice, quiet: bool) -> Result<Option<Gpu>, Failure> {
+    if renderer == RendererChoice::Cpu {
+        return Ok(None);
+    }
+    match Gpu::open() {
+        Ok(gpu) => Ok(Some(gpu)),
+        Err(GpuError::NoAdapter { .. }) if renderer == RendererChoice::Auto => {
             if !quiet {
                 eprintln!("no GPU adapter found: drawing on the CPU");
             }
@@ -153,7 +164,7 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
         }
         return plain_stage(from, sun);
     }
-    if sun.place.is_some() || sun.date.is_some() || sun.utc_offset.is_some() || sun.north.is_some() {
+    if sun.is_given() {
         return Err(Failure::usage(
             "a set has the sun that it was baked with: leave --place, --date, --utc-offset and --north out",
         ));
@@ -206,13 +217,19 @@ fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {
-    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })
-        .map_err(|error| Failure::from(BakeError::Load(error)))?;
+/// The sun that is asked for, over a scene that is not baked.
+pub fn sun_request(sun: &SunArgs) -> Result<SunRequest, Failure> {
     let day = DayRequest::new(sun.place, sun.date).map_err(|e| Failure::usage(e.to_string()))?;
     let day = DayRequest { utc_offset_h: sun.utc_offset, north_deg: sun.north.unwrap_or(0.0), ..day };
     let names_a_day = sun.place.is_some() || sun.date.is_some() || sun.utc_offset.is_some();
-    let request = if names_a_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) };
+    Ok(if names_a_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) })
+}
+
+/// A scene that is not baked, under a sun.
+fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {
+    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })
+        .map_err(|error| Failure::from(BakeError::Load(error)))?;
+    let request = sun_request(sun)?;
     let mut warnings = Vec::new();
     let path = sunbake::sun_path(&request, &scene, &mut warnings).map_err(|e| Failure::usage(e.to_string()))?;
     warnings.iter().for_each(|warning| eprintln!("sunplay: {warning}"));

@@ -4,6 +4,7 @@ use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, 
 use super::artist::{open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, make_folder, write_rgb};
+use super::out;
 use super::place::CameraChoice;
 use super::terminal::Terminal;
 use super::when::label;
@@ -77,9 +78,9 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let summary = Summary::new(contact, set, &baked, &columns, renderer, start.elapsed().as_secs_f64());
     if args.manners.json {
         let text = serde_json::to_string_pretty(&summary).map_err(|e| Failure::io(e.to_string()))?;
-        println!("{text}");
+        out::print(&(text + "\n"))?;
     } else if !args.manners.quiet {
-        print!("{}", summary.text());
+        out::print(&summary.text())?;
     }
     Ok(())
 }

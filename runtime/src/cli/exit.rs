@@ -1,10 +1,13 @@
-//! Exit codes: 0 done, 1 usage, 2 input or output failed, 3 the input is bad, 4 internal, 5 not supported here.
+//! Exit codes: 0 done, 1 usage, 2 input or output failed, 3 the input is bad, 4 internal, 5 not supported here, 6 a limit of
+//! `compare --fail-above` was passed.
 
 use std::error::Error;
 use std::process::ExitCode;
 use sunbake::BakeError;
 use sunbake::disk::read::ReadError;
+use sunbake::report::folder::FolderError;
 use sunbake::scene::ErrorClass;
+use sunbake_runtime::compare::ContestError;
 use sunbake_runtime::gpu::GpuError;
 use sunbake_runtime::stage::StageError;
 
@@ -28,6 +31,16 @@ impl Failure {
         Self { code: 2, error: message.into().into() }
     }
 
+    /// What was given is no good.
+    pub fn bad_input(message: impl Into<String>) -> Self {
+        Self { code: 3, error: message.into().into() }
+    }
+
+    /// Something is above a limit that was set for it.
+    pub fn limit(message: impl Into<String>) -> Self {
+        Self { code: 6, error: message.into().into() }
+    }
+
     /// This machine cannot do it.
     pub fn unsupported(message: impl Into<String>) -> Self {
         Self { code: 5, error: message.into().into() }
@@ -38,8 +51,9 @@ impl From<StageError> for Failure {
     fn from(error: StageError) -> Self {
         let code = match &error {
             StageError::Set(ReadError::Io { .. } | ReadError::NotASet { .. }) => 2,
+            StageError::NoScene { .. } => 2,
             StageError::Scene(error) if error.class() == ErrorClass::Io => 2,
-            StageError::Set(_) | StageError::Scene(_) | StageError::Mismatch { .. } => 3,
+            StageError::Set(_) | StageError::Scene(_) | StageError::Changed { .. } | StageError::Mismatch { .. } => 3,
         };
         Self { code, error: error.into() }
     }
@@ -54,6 +68,22 @@ impl From<BakeError> for Failure {
             _ => 3,
         };
         Self { code, error: error.into() }
+    }
+}
+
+impl From<ContestError> for Failure {
+    fn from(error: ContestError) -> Self {
+        match error {
+            ContestError::Stage(error) => error.into(),
+            ContestError::Reference { .. } => Self { code: 5, error: error.into() },
+            ContestError::Cancelled => Self { code: 130, error: error.into() },
+        }
+    }
+}
+
+impl From<FolderError> for Failure {
+    fn from(error: FolderError) -> Self {
+        Self { code: 2, error: error.into() }
     }
 }
 

@@ -90,16 +90,31 @@ fn write_png(
     depth: png::BitDepth,
     bytes: &[u8],
 ) -> Result<(), Failure> {
-    let write = || -> Result<(), png::EncodingError> {
-        let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-        let mut encoder = png::Encoder::new(file, size[0], size[1]);
-        encoder.set_color(color);
-        encoder.set_depth(depth);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(bytes)?;
-        writer.finish()
-    };
+    let write = || encode_png(std::io::BufWriter::new(std::fs::File::create(path)?), size, color, depth, bytes);
     write().map_err(|e| cannot_write(path, &e))
+}
+
+/// The file of a picture of sRGB codes.
+pub fn png_bytes(picture: &Raster<[u8; 3]>) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let codes = picture.pixels.as_flattened();
+    encode_png(&mut file, picture.size, png::ColorType::Rgb, png::BitDepth::Eight, codes)?;
+    Ok(file)
+}
+
+fn encode_png(
+    file: impl std::io::Write,
+    size: [u32; 2],
+    color: png::ColorType,
+    depth: png::BitDepth,
+    bytes: &[u8],
+) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(file, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()
 }
 
 /// A file that cannot be written.

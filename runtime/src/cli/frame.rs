@@ -4,6 +4,7 @@ use super::args::FrameArgs;
 use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
+use super::out;
 use super::when::label;
 use serde_json::json;
 use std::time::Instant;
@@ -37,9 +38,10 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
             "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(), "details": technique.details(),
         });
-        println!("{report:#}");
+        out::print(&format!("{report:#}\n"))?;
     } else if !args.manners.quiet {
-        println!("{} at {clock} -> {} ({seconds:.2} s on {renderer})", args.set.display(), args.output_file.display());
+        let (set, file) = (args.set.display(), args.output_file.display());
+        out::print(&format!("{set} at {clock} -> {file} ({seconds:.2} s on {renderer})\n"))?;
     }
     Ok(())
 }

@@ -4,6 +4,7 @@ use super::args::FramesArgs;
 use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
+use super::out;
 use super::terminal::Terminal;
 use super::when::label;
 use serde_json::json;
@@ -65,12 +66,14 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
             "bytes": technique.bytes(), "gpu": technique.census(), "effects": effects.entries(),
             "plan": technique.plan(), "details": technique.details(),
         });
-        println!("{report:#}");
+        out::print(&format!("{report:#}\n"))?;
     } else if !args.manners.quiet {
         let folder = args.output_folder.display();
-        println!("{} pictures in {seconds:.1} s on {renderer}", args.count);
-        println!("  {folder}/contact.png   all of them small");
-        println!("  {folder}/day.png       an animated PNG");
+        out::print(&format!(
+            "{} pictures in {seconds:.1} s on {renderer}\n  {folder}/contact.png   all of them small\n  \
+             {folder}/day.png       an animated PNG\n",
+            args.count
+        ))?;
     }
     Ok(())
 }

@@ -2,11 +2,13 @@
 
 mod args;
 mod artist;
+mod compare;
 mod demo;
 mod exit;
 mod files;
 mod frame;
 mod frames;
+mod out;
 mod place;
 mod terminal;
 mod when;
@@ -22,6 +24,7 @@ sunplay plays sunbake's maps back at any time of the day.
   sunplay demo                                    bake our own scene and see its day, beside truth
   sunplay frame baked --at 17:30 -o evening.png   one picture
   sunplay frames baked --count 12 -o day          a day: pictures, a contact sheet, an animation
+  sunplay compare baked -o report                 what the bake loses, and what live shadows cost
   sunplay frame --help                            every option";
 
 /// Runs the command that the process was started with.
@@ -37,6 +40,7 @@ pub fn run() -> ExitCode {
     exit::report(|| match args.command {
         Command::Frame(args) => frame::run(&args),
         Command::Frames(args) => frames::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Demo(args) => demo::run(&args),
     })
 }

@@ -2,6 +2,7 @@
 
 use super::exit::Failure;
 use glam::DVec3;
+use sunbake::scene::Scene;
 use sunbake_runtime::{Camera, Stage};
 
 /// A camera, as asked for.
@@ -55,7 +56,7 @@ impl CameraChoice {
     pub fn on(&self, stage: &Stage, aspect: f64) -> Result<Camera, Failure> {
         match self {
             Self::Default => Ok(Camera::default_of(stage, aspect)),
-            Self::Named(name) => named(stage, name),
+            Self::Named(name) => named(&stage.scene, name),
             Self::LookAt { eye_m, target_m, fov_deg } => {
                 let centre_m = stage.scene.centre_m;
                 let camera = Camera::look_at(*eye_m - centre_m, *target_m - centre_m, fov_deg.to_radians());
@@ -67,14 +68,14 @@ impl CameraChoice {
     }
 }
 
-fn named(stage: &Stage, name: &str) -> Result<Camera, Failure> {
-    let cameras = &stage.scene.cameras;
+/// A camera of a scene by its name.
+pub fn named(scene: &Scene, name: &str) -> Result<Camera, Failure> {
+    let cameras = &scene.cameras;
     if let Some(camera) = cameras.iter().find(|camera| camera.name.as_deref() == Some(name)) {
         return Ok(Camera::from_scene(camera));
     }
     let names: Vec<&str> = cameras.iter().filter_map(|camera| camera.name.as_deref()).collect();
-    let known =
-        if names.is_empty() { "the set's scene has none".into() } else { format!("it has {}", names.join(", ")) };
+    let known = if names.is_empty() { "the scene has none".into() } else { format!("it has {}", names.join(", ")) };
     Err(Failure::usage(format!(
         "there is no camera named {name}: {known}; leave --camera out, or give ex,ey,ez,tx,ty,tz[,fov]"
     )))

@@ -5,18 +5,31 @@ use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
 use sunbake::progress::{Progress, Stage};
+use sunbake::signals::Signals;
 
 /// One line on stderr, while there is something to wait for.
 #[derive(Default)]
 pub struct Terminal {
     is_quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
+    signals: Option<Signals>,
 }
 
 impl Terminal {
     /// One that draws if stderr is a terminal and `quiet` is not asked for.
     pub fn new(quiet: bool) -> Self {
-        Self { is_quiet: quiet || !std::io::stderr().is_terminal(), bar: Mutex::default() }
+        Self { is_quiet: quiet || !std::io::stderr().is_terminal(), bar: Mutex::default(), signals: None }
+    }
+
+    /// The same, which hears Ctrl-C: what it draws for is asked to stop, and takes back what it made.
+    pub fn listening(mut self) -> Self {
+        self.signals = Some(Signals::listen());
+        self
+    }
+
+    /// What to exit with, if a signal came.
+    pub fn signal_code(&self) -> Option<u8> {
+        self.signals.as_ref().and_then(Signals::exit_code)
     }
 
     /// Starts on something that has `total` parts; 0 if it does not count.
@@ -65,6 +78,10 @@ impl Progress for Terminal {
 
     fn advance(&self, by: u64) {
         self.step(by);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.signal_code().is_some()
     }
 }
 

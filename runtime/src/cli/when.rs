@@ -52,7 +52,7 @@ impl When {
         match candidates.into_iter().find(|t| (-slack..=1.0 + slack).contains(t)) {
             Some(t) => Ok(t.clamp(0.0, 1.0)),
             None => Err(Failure::usage(format!(
-                "{} is outside this set's path, which runs from {} to {}: give a time between, or bake with --window",
+                "{} is outside the sun's path, which runs from {} to {}: give a time between",
                 clock_text(minutes),
                 clock_text(start),
                 clock_text(end)

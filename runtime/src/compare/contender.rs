@@ -1,0 +1,174 @@
+//! What can be compared, and what it is called.
+//!
+//! A name is parts with colons between them: `baked:16:lanes3:filtered`, `volumes`, `map:pcss`, `truth:hard`. What a user asks for
+//! is a name as well, and stands for all whose parts hold its own: `baked` is every way to play a set, `baked:8` those with eight
+//! bits.
+
+use crate::shadow_maps::Variant;
+use crate::technique::Truth;
+use crate::volumes::Mode;
+use std::fmt::{Display, Formatter};
+use sunbake::maps::Bits;
+use sunbake_shaders::Filter;
+
+/// A way to find visibility, with all that decides what it shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contender {
+    /// A baked set, played back.
+    Baked(Playback),
+    /// Shadow volumes.
+    Volumes(Mode),
+    /// Shadow maps.
+    Map(Variant),
+    /// Rays.
+    Truth(Truth),
+}
+
+/// How a set is played back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Playback {
+    /// Bits of a stored time.
+    pub bits: Bits,
+    /// Lanes across the sun's disc.
+    pub lanes: usize,
+    /// How times are filtered.
+    pub filter: Filter,
+}
+
+impl Display for Contender {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        match self {
+            Self::Baked(Playback { bits, lanes, filter }) => {
+                let filter = if *filter == Filter::Nearest { "nearest" } else { "filtered" };
+                write!(f, "baked:{}:lanes{lanes}:{filter}", bits.count())
+            }
+            Self::Volumes(mode) => write!(f, "{mode}"),
+            Self::Map(variant) => write!(f, "{variant}"),
+            Self::Truth(Truth::Hard) => write!(f, "truth:hard"),
+            Self::Truth(Truth::Soft { rays }) => write!(f, "truth:soft:{rays}"),
+        }
+    }
+}
+
+impl Contender {
+    /// What is compared unless told otherwise, of a set with these bits and each of these counts of lanes.
+    pub fn all(most_bits: Bits, lane_counts: &[usize]) -> Vec<Self> {
+        let bits: &[Bits] = if most_bits == Bits::Sixteen { &[Bits::Sixteen, Bits::Eight] } else { &[Bits::Eight] };
+        let mut all = Vec::new();
+        for &lanes in lane_counts {
+            for &bits in bits {
+                for filter in [Filter::Bilinear, Filter::Nearest] {
+                    all.push(Self::Baked(Playback { bits, lanes, filter }));
+                }
+            }
+        }
+        all.push(Self::Volumes(Mode::Planned));
+        all.extend(Variant::ALL.map(Self::Map));
+        all.push(Self::Truth(Truth::Hard));
+        all
+    }
+
+    /// `baked`, `volumes`, `map` or `truth`.
+    pub fn family(&self) -> &'static str {
+        match self {
+            Self::Baked(_) => "baked",
+            Self::Volumes(_) => "volumes",
+            Self::Map(_) => "map",
+            Self::Truth(_) => "truth",
+        }
+    }
+
+    /// Whether it takes the sun for a point: it is right or wrong about the sun's centre, and knows no penumbra.
+    pub fn is_hard(&self) -> bool {
+        match self {
+            Self::Baked(_) => false,
+            Self::Volumes(_) => true,
+            Self::Map(variant) => !variant.is_soft(),
+            Self::Truth(truth) => *truth == Truth::Hard,
+        }
+    }
+
+    /// Whether a GPU has to draw it.
+    pub fn needs_gpu(&self) -> bool {
+        matches!(self, Self::Volumes(_) | Self::Map(_))
+    }
+
+    /// Whether a name that somebody asks for means it.
+    fn is_meant_by(&self, asked: &str) -> bool {
+        let name = self.to_string();
+        let parts: Vec<&str> = name.split(':').collect();
+        let mut asked = asked.split(':');
+        // The family comes first; `bilinear` is what `--filter` calls the same.
+        asked.next() == Some(parts[0])
+            && asked.all(|part| parts[1..].contains(&if part == "bilinear" { "filtered" } else { part }))
+    }
+}
+
+/// Those of `all` that names mean, in the order of `all`; then modes of volumes and truths that are asked for by their own names.
+/// No names mean all.
+pub fn selected(all: &[Contender], names: &[String]) -> Result<Vec<Contender>, String> {
+    if names.is_empty() {
+        return Ok(all.to_vec());
+    }
+    let others = Mode::ALL.map(Contender::Volumes);
+    let mut found: Vec<Contender> = Vec::new();
+    let mut extra: Vec<Contender> = Vec::new();
+    for name in names {
+        let meant: Vec<Contender> = all.iter().copied().filter(|one| one.is_meant_by(name)).collect();
+        let named = others.iter().copied().find(|one| one.to_string() == *name).or_else(|| soft_truth(name));
+        match named {
+            _ if !meant.is_empty() => found.extend(meant),
+            Some(one) => extra.push(one),
+            None => return Err(unknown(all, name)),
+        }
+    }
+    let mut ordered: Vec<Contender> = all.iter().copied().filter(|one| found.contains(one)).collect();
+    for one in extra {
+        if !ordered.contains(&one) {
+            ordered.push(one);
+        }
+    }
+    Ok(ordered)
+}
+
+/// `truth:soft` or `truth:soft:N`.
+fn soft_truth(name: &str) -> Option<Contender> {
+    let rays = match name.strip_prefix("truth:soft")? {
+        "" => Truth::DEFAULT_RAYS,
+        rest => rest.strip_prefix(':')?.parse().ok().filter(|n| (1..=65_536).contains(n))?,
+    };
+    Some(Contender::Truth(Truth::Soft { rays }))
+}
+
+fn unknown(all: &[Contender], name: &str) -> String {
+    let names: Vec<String> = all.iter().map(ToString::to_string).collect();
+    format!(
+        "there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N",
+        names.join(", ")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(asked: &[&str]) -> Result<Vec<String>, String> {
+        let all = Contender::all(Bits::Sixteen, &[1, 3]);
+        let asked: Vec<String> = asked.iter().map(|&name| name.to_owned()).collect();
+        Ok(selected(&all, &asked)?.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn a_part_of_a_name_means_all_that_have_it() {
+        assert_eq!(names(&[]).unwrap().len(), 8 + 1 + 10 + 1);
+        assert_eq!(names(&["baked"]).unwrap().len(), 8);
+        assert_eq!(names(&["baked:8:nearest"]).unwrap(), ["baked:8:lanes1:nearest", "baked:8:lanes3:nearest"]);
+        assert_eq!(names(&["baked:16:lanes3:bilinear"]).unwrap(), ["baked:16:lanes3:filtered"]);
+        assert_eq!(names(&["map:pcf4", "volumes"]).unwrap(), ["volumes", "map:pcf4"]);
+        assert_eq!(names(&["map"]).unwrap().len(), 10);
+        assert_eq!(names(&["truth:soft:9", "volumes:zfail"]).unwrap(), ["truth:soft:9", "volumes:zfail"]);
+        for bad in ["", "8", "baked:9", "map:", "truth:soft:0", "truth:soft:x", "volume", "baked:16:16x"] {
+            assert!(names(&[bad]).is_err(), "{bad}");
+        }
+    }
+}

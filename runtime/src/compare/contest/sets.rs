@@ -1,0 +1,76 @@
+//! Sets on disk, and the stages that are read from them.
+
+use super::super::contender::Playback;
+use super::super::report::SetEntry;
+use super::Absent;
+use crate::stage::Stage;
+use std::path::{Path, PathBuf};
+use sunbake::disk::manifest::Manifest;
+use sunbake::disk::read::{ReadError, read_manifest};
+use sunbake::maps::Bits;
+use sunbake_shaders::AmbientModel;
+
+/// A set on disk, from which stages are read.
+#[derive(Debug, Clone)]
+pub struct SetOnDisk {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What the report says of it.
+    pub entry: SetEntry,
+}
+
+impl SetOnDisk {
+    /// Reads what the manifest of a set says.
+    pub fn read(folder: &Path) -> Result<Self, ReadError> {
+        let manifest = read_manifest(folder)?;
+        Ok(Self { folder: folder.to_owned(), entry: entry_of(folder, &manifest) })
+    }
+}
+
+fn entry_of(folder: &Path, manifest: &Manifest) -> SetEntry {
+    let seconds = &manifest.stats.seconds;
+    let layers = manifest.atlases.iter().flat_map(|atlas| &atlas.lanes).flat_map(|lane| &lane.layers);
+    let size = |name: &String| std::fs::metadata(folder.join(name)).map_or(0, |file| file.len());
+    SetEntry {
+        lanes: manifest.atlases.iter().map(|atlas| atlas.lanes.len()).max().unwrap_or(0) as u64,
+        bits: manifest.bits,
+        texels: manifest.stats.texels,
+        texels_per_metre: manifest.scene.texels_per_metre,
+        bake_s: seconds.load + seconds.unwrap + seconds.bvh + seconds.visibility + seconds.encode + seconds.write,
+        disk_bytes: layers.map(|layer| size(&layer.rise) + size(&layer.fall)).sum(),
+        engine: manifest.stats.engine.clone(),
+    }
+}
+
+/// The set that a way of playing back reads: one of as many lanes or, for a single one, any, whose middle lane it is.
+pub(super) fn set_for(sets: &[SetOnDisk], playback: Playback) -> Option<&SetOnDisk> {
+    let has = |set: &&SetOnDisk| set.entry.lanes == playback.lanes as u64;
+    sets.iter().find(has).or_else(|| sets.first().filter(|_| playback.lanes == 1))
+}
+
+/// Stages of sets, the last one kept while it serves.
+pub(super) struct SetReader<'a> {
+    pub sets: &'a [SetOnDisk],
+    pub current: Option<(PathBuf, usize, Bits, Stage)>,
+}
+
+impl SetReader<'_> {
+    pub fn stage(&mut self, playback: Playback) -> Result<&Stage, Absent> {
+        let set = set_for(self.sets, playback)
+            .ok_or_else(|| Absent::Other(format!("there is no set of {} lanes", playback.lanes)))?;
+        let is_kept = |kept: &(PathBuf, usize, Bits, Stage)| {
+            let (folder, lanes, bits, _) = kept;
+            *folder == set.folder && *lanes == playback.lanes && (*bits == playback.bits || *bits == Bits::Sixteen)
+        };
+        let stage = match self.current.take().filter(is_kept) {
+            Some((.., stage)) => stage,
+            None => {
+                let stage = Stage::read(&set.folder)?.without_lamp().with_ambient(AmbientModel::Hemisphere);
+                if playback.lanes as u64 == set.entry.lanes { stage } else { stage.with_one_lane() }
+            }
+        };
+        let stage = if playback.bits == Bits::Eight { stage.with_eight_bits() } else { stage };
+        let kept = self.current.insert((set.folder.clone(), playback.lanes, stage.bits, stage));
+        Ok(&kept.3)
+    }
+}

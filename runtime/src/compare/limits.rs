@@ -1,0 +1,121 @@
+//! Limits for errors and costs, as `--fail-above` takes them: `visibility=0.02,wrong=0.01`.
+
+use super::report::{AboveLimit, LeftOut, LimitEntry, TechniqueEntry};
+use std::str::FromStr;
+
+/// What can be limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limited {
+    /// Mean error of visibility.
+    Visibility,
+    /// What 99 in 100 pixels are not off by more than.
+    P99,
+    /// The largest error.
+    Worst,
+    /// Share of pixels off by more than a half.
+    Wrong,
+    /// Mean error in penumbras.
+    Penumbra,
+    /// Mean error outside of them.
+    Outside,
+    /// One less the structural similarity of lit pictures.
+    Dissimilarity,
+    /// Milliseconds a frame.
+    FrameMs,
+    /// MiB kept from frame to frame.
+    Mib,
+}
+
+impl Limited {
+    const ALL: [(&'static str, Self); 9] = [
+        ("visibility", Self::Visibility),
+        ("p99", Self::P99),
+        ("worst", Self::Worst),
+        ("wrong", Self::Wrong),
+        ("penumbra", Self::Penumbra),
+        ("outside", Self::Outside),
+        ("dissimilarity", Self::Dissimilarity),
+        ("frame_ms", Self::FrameMs),
+        ("mib", Self::Mib),
+    ];
+
+    /// None where there was no pixel to tell by.
+    fn of(self, technique: &TechniqueEntry) -> Option<f64> {
+        let error = &technique.error;
+        let is_cost = matches!(self, Self::FrameMs | Self::Mib);
+        if error.pixels == 0 && !is_cost {
+            return None;
+        }
+        Some(match self {
+            Self::Visibility => error.mean,
+            Self::P99 => error.p99,
+            Self::Worst => error.worst,
+            Self::Wrong => error.wrong_share,
+            Self::Penumbra => return error.penumbra,
+            Self::Outside => error.outside,
+            Self::Dissimilarity => 1.0 - error.ssim,
+            Self::FrameMs => technique.times.frame_ms,
+            Self::Mib => technique.memory_bytes as f64 / f64::from(1 << 20),
+        })
+    }
+}
+
+/// The most that is allowed of something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Of what.
+    pub what: Limited,
+    /// How much.
+    pub most: f64,
+}
+
+impl FromStr for Limit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = || Limited::ALL.map(|(key, _)| key).join(", ");
+        let (key, value) = text
+            .split_once('=')
+            .ok_or_else(|| format!("`{text}` is no limit: give KEY=NUMBER, where KEY is one of {}", known()))?;
+        let found = Limited::ALL.into_iter().find(|(name, _)| *name == key.trim());
+        let (_, what) = found.ok_or_else(|| format!("`{key}` cannot be limited: give one of {}", known()))?;
+        let most: Option<f64> = value.trim().parse().ok().filter(|most: &f64| most.is_finite() && *most >= 0.0);
+        let most = most.ok_or_else(|| format!("`{value}` is no limit for {key}: give a number from 0 up"))?;
+        Ok(Self { what, most })
+    }
+}
+
+impl Limit {
+    /// Who is above it, and of whom that cannot be told: those that were to be compared and were left out, and those that showed
+    /// nothing to tell by. A limit that nobody was held to is not kept.
+    pub fn check(&self, techniques: &[TechniqueEntry], left_out: &[LeftOut]) -> LimitEntry {
+        let key = Limited::ALL.iter().find(|(_, what)| *what == self.what).map_or("", |(key, _)| key);
+        let above = techniques.iter().filter_map(|technique| {
+            let value = self.what.of(technique)?;
+            (value > self.most).then(|| AboveLimit { name: technique.name.clone(), value })
+        });
+        let untold = techniques.iter().filter(|technique| self.what.of(technique).is_none());
+        let unchecked = untold.map(|technique| &technique.name).chain(left_out.iter().map(|left| &left.name));
+        LimitEntry {
+            key: key.into(),
+            limit: self.most,
+            above: above.collect(),
+            unchecked: unchecked.cloned().collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_read_and_what_is_none_is_refused() {
+        assert_eq!("visibility=0.02".parse(), Ok(Limit { what: Limited::Visibility, most: 0.02 }));
+        assert_eq!(" mib = 4".trim().parse(), Ok(Limit { what: Limited::Mib, most: 4.0 }));
+        for bad in ["", "visibility", "visibility=", "visibility=-1", "visibility=NaN", "brightness=1", "=1"] {
+            let message = bad.parse::<Limit>().unwrap_err();
+            assert!(message.contains("give"), "{bad}: {message}");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! The tables of a report's page.
+
+use super::{LeftOut, Passes, Report, SetEntry, TechniqueEntry};
+use sunbake::report::{Cell, Column, Row, Table, escape, plain, with_unit};
+
+/// What each costs, and how far it is off.
+pub(super) fn results(report: &Report) -> String {
+    let columns = vec![
+        Column::words("technique", "A click puts it on the left of the picture"),
+        Column::numbers("mean", "error", "Mean error of visibility, 0 to 1, over pixels that show a surface"),
+        Column::numbers("99 %", "error", "99 in 100 pixels are off by no more"),
+        Column::numbers("wrong", "% of pixels", "Off by more than a half: sun for shade, or shade for sun"),
+        Column::numbers("penumbra", "mean", "Mean error where the reference sees a part of the sun"),
+        Column::numbers("outside", "mean", "Mean error everywhere else"),
+        Column::numbers("likeness", "SSIM", "Structural similarity of the lit pictures, 1 for equal ones"),
+        Column::numbers("centre", "% wrong", "Of what takes the sun for a point: held against truth of its centre"),
+        Column::numbers(
+            "frame",
+            "ms",
+            "Passes by the adapter's clock, and what the CPU finds for them; the least of the rounds, in the mean",
+        ),
+        Column::numbers("memory", "MiB", "Kept from frame to frame, beyond the scene"),
+        Column::numbers("on disk", "MiB", "Files of times, without the scene; nothing where they were not written"),
+        Column::numbers("bake", "s", "Before the first frame, on the machine that baked"),
+    ];
+    let table = Table {
+        caption: format!(
+            "Held against {}, over {} frames of {} by {} pixels. Headings sort.",
+            report.reference.name,
+            report.cameras.len() * report.times.len(),
+            report.size[0],
+            report.size[1]
+        ),
+        columns,
+        rows: report.techniques.iter().enumerate().map(|(i, technique)| result(i, technique)).collect(),
+    };
+    format!("<h2>What each costs, and how far it is off</h2>\n{}", table.html())
+}
+
+fn result(index: usize, technique: &TechniqueEntry) -> Row {
+    let number = |value: f64| Cell::number(&plain(value, 3), value);
+    let percent = |share: f64| Cell::number(&format!("{:.3}", share * 100.0), share);
+    let or_none = |value: Option<Cell>| value.unwrap_or_else(Cell::empty);
+    let mebibytes = |bytes: u64| number(bytes as f64 / f64::from(1 << 20));
+    let error = &technique.error;
+    Row {
+        cells: vec![
+            Cell::html(format!("<code>{}</code>", escape(&technique.name)), None),
+            number(error.mean),
+            number(error.p99),
+            percent(error.wrong_share),
+            or_none(error.penumbra.map(number)),
+            number(error.outside),
+            Cell::number(&format!("{:.4}", error.ssim), error.ssim),
+            or_none(technique.hard_error.map(|error| percent(error.wrong_share))),
+            number(technique.times.frame_ms),
+            mebibytes(technique.memory_bytes),
+            or_none(technique.disk_bytes.map(mebibytes)),
+            or_none(technique.preparation.bake_s.map(number)),
+        ],
+        data: vec![("technique".into(), index.to_string())],
+        ..Row::default()
+    }
+}
+
+/// Where the time goes.
+pub(super) fn passes(report: &Report) -> String {
+    let columns = vec![
+        Column::words("technique", ""),
+        Column::numbers("depth", "ms", "Depths as the camera sees them"),
+        Column::numbers("volumes", "ms", "Shadow volumes in the stencil"),
+        Column::numbers("maps", "ms", "Shadow maps, and pictures of what casts"),
+        Column::numbers("light", "ms", "What each pixel sees of the sun"),
+        Column::numbers("all passes", "ms", "From the start of the first to the end of the last"),
+        Column::numbers("CPU", "ms", "To find what passes draw: silhouettes, or where maps lie"),
+        Column::numbers("call to picture", "ms", "With reading it back, which a window does not do"),
+        Column::numbers("setting up", "s", "Uploading the scene, and building what draws it"),
+    ];
+    let number = |value: f64| Cell::number(&plain(value, 3), value);
+    let row = |technique: &TechniqueEntry| {
+        let times = &technique.times;
+        let pass = |of: fn(&Passes) -> f64| {
+            times.passes.as_ref().map(of).filter(|&ms| ms > 0.0).map_or_else(Cell::empty, number)
+        };
+        Row::of(vec![
+            Cell::html(format!("<code>{}</code>", escape(&technique.name)), None),
+            pass(|p| p.depth_ms),
+            pass(|p| p.volumes_ms),
+            pass(|p| p.maps_ms),
+            pass(|p| p.light_ms),
+            pass(|p| p.all_ms),
+            number(times.cpu_ms),
+            number(times.wall_ms),
+            number(technique.preparation.setup_s),
+        ])
+    };
+    let table = Table {
+        caption: "Means over all frames; nothing is kept from one to the next.".into(),
+        columns,
+        rows: report.techniques.iter().map(row).collect(),
+    };
+    format!("<h2>Where the time goes</h2>\n{}", table.html())
+}
+
+/// What was baked.
+pub(super) fn sets(report: &Report) -> String {
+    if report.scene.sets.is_empty() {
+        return String::new();
+    }
+    let columns = vec![
+        Column::numbers("lanes", "", "Lines across the sun's disc"),
+        Column::numbers("bits", "", "Of a stored time"),
+        Column::numbers("texels", "", "That stand for a point of a surface"),
+        Column::numbers("density", "texels/m", ""),
+        Column::words("engine", "What found the times"),
+        Column::numbers("bake", "s", "Without ambient light"),
+        Column::numbers("files", "", "Of times, without the scene"),
+    ];
+    let row = |set: &SetEntry| {
+        Row::of(vec![
+            Cell::number(&set.lanes.to_string(), set.lanes as f64),
+            Cell::number(&set.bits.to_string(), f64::from(set.bits)),
+            Cell::number(&plain(set.texels as f64, 3), set.texels as f64),
+            Cell::number(&plain(set.texels_per_metre, 3), set.texels_per_metre),
+            Cell::text(&set.engine),
+            Cell::number(&plain(set.bake_s, 3), set.bake_s),
+            Cell::number(&with_unit(set.disk_bytes as f64, "bytes"), set.disk_bytes as f64),
+        ])
+    };
+    let table = Table { caption: String::new(), columns, rows: report.scene.sets.iter().map(row).collect() };
+    format!("<h2>What was baked</h2>\n{}", table.html())
+}
+
+/// What was left out, and why.
+pub(super) fn left_out(report: &Report) -> String {
+    if report.left_out.is_empty() {
+        return String::new();
+    }
+    let line = |left: &LeftOut| format!("<li><code>{}</code>: {}</li>\n", escape(&left.name), escape(&left.reason));
+    let lines: String = report.left_out.iter().map(line).collect();
+    format!("<h2>What was left out</h2>\n<ul>\n{lines}</ul>\n")
+}

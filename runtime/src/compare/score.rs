@@ -1,0 +1,215 @@
+//! How far a technique is from what it is held against, in a few numbers.
+//!
+//! Only pixels that show a surface count: how much sky a camera sees would otherwise set the mean. The *penumbra* is where the
+//! reference is neither lit nor dark; what is wrong outside of it is a shadow in the wrong place, or none. Structural similarity
+//! (Wang et al., "Image quality assessment: from error visibility to structural similarity", *IEEE Transactions on Image
+//! Processing* 13, 2004) is of the lit pictures' luma as a display shows them, over windows of eight by eight pixels. What is not a
+//! number is as wrong as can be, and counted.
+
+use crate::image::Raster;
+use crate::light::{LUMINANCE, codes_from_display, display_from_light};
+use glam::Vec3;
+use image_compare::{Algorithm, gray_similarity_structure};
+use serde::{Deserialize, Serialize};
+
+/// Off by more than this is wrong: lit where it is dark, or dark where it is lit.
+pub const WRONG: f32 = 0.5;
+/// What the reference sees of the sun in its penumbras.
+pub const PENUMBRA: [f32; 2] = [0.02, 0.98];
+
+/// Errors of visibility, 0 to 1, over pixels that show a surface.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Score {
+    /// Pixels compared.
+    pub pixels: u64,
+    /// Mean error.
+    pub mean: f64,
+    /// 99 in 100 pixels are off by no more.
+    pub p99: f64,
+    /// The largest error.
+    pub worst: f64,
+    /// Share of pixels that are off by more than a half.
+    pub wrong_share: f64,
+    /// Mean error where the reference sees from 2 to 98 hundredths of the sun; null where it has no such pixel.
+    pub penumbra: Option<f64>,
+    /// Mean error everywhere else.
+    pub outside: f64,
+    /// Share of pixels in the reference's penumbras.
+    pub penumbra_share: f64,
+    /// Mean structural similarity of the lit pictures, 1 for equal ones.
+    pub ssim: f64,
+    /// Pixels whose visibility is no number; each counts as an error of 1.
+    pub not_numbers: u64,
+}
+
+/// Errors of several pictures, gathered.
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
+    errors: Vec<f32>,
+    in_penumbra: (f64, u64),
+    outside: (f64, u64),
+    not_numbers: u64,
+    ssim: (f64, u64),
+}
+
+impl Tally {
+    /// Adds a picture of visibility, held against another, where `shows_surface`.
+    pub fn add(&mut self, seen: &Raster<f32>, reference: &Raster<f32>, shows_surface: impl Fn(usize) -> bool) {
+        for (i, (&seen, &reference)) in seen.pixels.iter().zip(&reference.pixels).enumerate() {
+            if !shows_surface(i) {
+                continue;
+            }
+            let is_number = !(seen - reference).is_nan();
+            self.not_numbers += u64::from(!is_number);
+            let error = if is_number { (seen - reference).abs() } else { 1.0 };
+            self.errors.push(error);
+            let is_penumbra = (PENUMBRA[0]..=PENUMBRA[1]).contains(&reference);
+            let part = if is_penumbra { &mut self.in_penumbra } else { &mut self.outside };
+            *part = (part.0 + f64::from(error), part.1 + 1);
+        }
+    }
+
+    /// Adds how like each other two lit pictures are.
+    pub fn add_likeness(&mut self, ssim: f64) {
+        self.ssim = (self.ssim.0 + ssim, self.ssim.1 + 1);
+    }
+
+    /// Adds what another tally has gathered.
+    pub fn append(&mut self, other: &Self) {
+        let sum = |a: (f64, u64), b: (f64, u64)| (a.0 + b.0, a.1 + b.1);
+        self.errors.extend_from_slice(&other.errors);
+        self.in_penumbra = sum(self.in_penumbra, other.in_penumbra);
+        self.outside = sum(self.outside, other.outside);
+        self.ssim = sum(self.ssim, other.ssim);
+        self.not_numbers += other.not_numbers;
+    }
+
+    /// The numbers.
+    pub fn score(&self) -> Score {
+        let count = self.errors.len();
+        let mean = |(sum, count): (f64, u64)| if count == 0 { 0.0 } else { sum / count as f64 };
+        let all = (self.in_penumbra.0 + self.outside.0, self.in_penumbra.1 + self.outside.1);
+        let share = |part: u64| part as f64 / count.max(1) as f64;
+        let wrong = self.errors.iter().filter(|&&error| error > WRONG).count() as u64;
+        Score {
+            pixels: count as u64,
+            mean: mean(all),
+            p99: percentile(&self.errors, 99),
+            worst: f64::from(self.errors.iter().copied().fold(0.0, f32::max)),
+            wrong_share: share(wrong),
+            penumbra: (self.in_penumbra.1 > 0).then(|| mean(self.in_penumbra)),
+            outside: mean(self.outside),
+            penumbra_share: share(self.in_penumbra.1),
+            ssim: if self.ssim.1 == 0 { 1.0 } else { mean(self.ssim) },
+            not_numbers: self.not_numbers,
+        }
+    }
+}
+
+/// What so many in a hundred values do not exceed; 0 of none.
+fn percentile(values: &[f32], percent: usize) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let mut values = values.to_vec();
+    let rank = (values.len() * percent).div_ceil(100).max(1) - 1;
+    f64::from(*values.select_nth_unstable_by(rank, f32::total_cmp).1)
+}
+
+/// The luma of a lit picture, as a display shows it.
+pub fn luma(light: &Raster<Vec3>) -> Raster<u8> {
+    let grey = |light: &Vec3| {
+        let codes = codes_from_display(display_from_light(*light)).map(f32::from);
+        Vec3::from(codes).dot(LUMINANCE).round() as u8
+    };
+    Raster { size: light.size, pixels: light.pixels.iter().map(grey).collect() }
+}
+
+/// How like each other two pictures of one size are: 1 for equal ones, 0 for strangers. Pictures of different sizes, or without
+/// a pixel, are strangers.
+pub fn structural_similarity(a: &Raster<u8>, b: &Raster<u8>) -> f64 {
+    let grey = |picture: &Raster<u8>| {
+        let [width, height] = picture.size;
+        image::GrayImage::from_raw(width, height, picture.pixels.clone())
+    };
+    let found = grey(a).zip(grey(b)).map(|(a, b)| gray_similarity_structure(&Algorithm::MSSIMSimple, &a, &b));
+    found.and_then(Result::ok).map_or(0.0, |found| found.score)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scored(seen: &[f32], reference: &[f32]) -> Score {
+        let raster = |pixels: &[f32]| Raster { size: [pixels.len() as u32, 1], pixels: pixels.to_vec() };
+        let mut tally = Tally::default();
+        tally.add(&raster(seen), &raster(reference), |_| true);
+        tally.score()
+    }
+
+    #[test]
+    fn the_numbers_are_those_of_a_list_that_one_can_add_up() {
+        let found = scored(&[1.0, 0.25, 0.0, 0.75], &[1.0, 0.5, 1.0, 1.0]);
+        assert_eq!((found.pixels, found.mean, found.worst, found.wrong_share), (4, 0.375, 1.0, 0.25));
+        assert_eq!((found.penumbra, found.penumbra_share), (Some(0.25), 0.25));
+        assert!((found.outside - 1.25 / 3.0).abs() < 1e-9);
+        let ramp: Vec<f32> = (1..=1000).map(|i| i as f32 / 1000.0).collect();
+        assert!((scored(&ramp, &[0.0; 1000]).p99 - 0.99).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_compared_with_itself_is_all_zeros() {
+        let same = [0.0, 0.3, 1.0];
+        let expected =
+            Score { pixels: 3, penumbra: Some(0.0), penumbra_share: 1.0 / 3.0, ssim: 1.0, ..Score::default() };
+        assert_eq!(scored(&same, &same), expected);
+        assert_eq!(Tally::default().score(), Score { ssim: 1.0, ..Score::default() });
+    }
+
+    #[test]
+    fn one_corrupted_pixel_moves_every_number_that_it_should() {
+        let mut seen = [1.0; 50];
+        seen[7] = 0.4;
+        let found = scored(&seen, &[1.0; 50]);
+        assert!((found.mean - 0.012).abs() < 1e-6 && (found.worst - 0.6).abs() < 1e-6);
+        assert_eq!((found.wrong_share, found.penumbra), (0.02, None));
+        seen[7] = f32::NAN;
+        let found = scored(&seen, &[1.0; 50]);
+        assert_eq!((found.not_numbers, found.worst, found.wrong_share), (1, 1.0, 0.02));
+    }
+
+    #[test]
+    fn pixels_that_show_no_surface_do_not_count() {
+        let raster = |pixels: [f32; 2]| Raster { size: [2, 1], pixels: pixels.to_vec() };
+        let mut tally = Tally::default();
+        tally.add(&raster([0.0, 0.5]), &raster([1.0, 0.5]), |i| i == 1);
+        assert_eq!((tally.score().pixels, tally.score().mean), (1, 0.0));
+    }
+
+    #[test]
+    fn what_is_added_in_parts_is_what_is_added_at_once() {
+        let [a, b] = [[0.2, 0.9, f32::NAN], [1.0, 0.1, 0.0]].map(|p| Raster { size: [3, 1], pixels: p.to_vec() });
+        let lit = Raster::filled([3, 1], 0.6);
+        let (mut whole, mut parts) = (Tally::default(), Tally::default());
+        for picture in [&a, &b] {
+            whole.add(picture, &lit, |_| true);
+            let mut part = Tally::default();
+            part.add(picture, &lit, |_| true);
+            part.add_likeness(0.5);
+            whole.add_likeness(0.5);
+            parts.append(&part);
+        }
+        assert_eq!(whole.score(), parts.score());
+    }
+
+    #[test]
+    fn likeness_falls_with_what_is_changed() {
+        let ramp = Raster { size: [32, 32], pixels: (0..1024u32).map(|i| (i % 32 * 8) as u8).collect::<Vec<u8>>() };
+        let mut patched = ramp.clone();
+        patched.pixels[..96].fill(255);
+        let (same, changed) = (structural_similarity(&ramp, &ramp), structural_similarity(&ramp, &patched));
+        assert!((same - 1.0).abs() < 1e-9 && changed < 0.97 && changed > 0.3, "{same} {changed}");
+        assert_eq!(structural_similarity(&ramp, &Raster::filled([4, 4], 0)), 0.0);
+    }
+}

@@ -1,0 +1,72 @@
+//! Small sets on disk, and what a comparison finds of them.
+
+use crate::write_scene;
+use glam::{DVec3, Vec2, Vec3};
+use std::path::Path;
+use sunbake::maps::Bits;
+use sunbake::progress::Silent;
+use sunbake::scene::Scene;
+use sunbake::settings::{BakeSettings, SunRequest};
+use sunbake::sun::DayRequest;
+use sunbake::testing::{SceneBuilder, floor};
+use sunbake_runtime::compare::{Contender, Contest, Outcome, Playback, SetOnDisk};
+use sunbake_runtime::technique::Truth;
+use sunbake_runtime::{Camera, Filter, Stage, View};
+
+/// Ground, a row of posts that chop the day into many spells, and a block, moved aside by so many metres.
+pub fn posts(aside_m: f32) -> Scene {
+    let ground = floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0);
+    let post = |i: i32| {
+        let x = i as f32 * 0.5 + aside_m;
+        (Vec3::new(x - 0.09, 0.0, -0.6), Vec3::new(x + 0.09, 1.6, -0.42))
+    };
+    let builder = (-4..=4).map(post).fold(SceneBuilder::new().soup(&ground), |all, (min, max)| all.block(min, max));
+    builder.block(Vec3::new(1.0 + aside_m, 0.0, 1.2), Vec3::new(2.0 + aside_m, 0.9, 2.0)).build()
+}
+
+/// A midsummer's day at 40 degrees north.
+pub fn summer() -> SunRequest {
+    let date = "2026-06-21".parse().expect("a date");
+    SunRequest::Day(DayRequest::new(Some([40.0, 0.0]), Some(date)).expect("a place"))
+}
+
+/// Bakes a scene on a page of 256 texels into `folder/name`, without ambient light.
+pub fn bake_into(folder: &Path, name: &str, scene: &Scene, edit: impl Fn(BakeSettings) -> BakeSettings) {
+    let file = write_scene(scene, folder, &format!("{name}-source"));
+    let settings =
+        BakeSettings { page_size_texels: 256, layer_cap: 8, ambient: None, ..BakeSettings::standard(summer()) };
+    sunbake::bake(&file, &folder.join(name), false, &edit(settings), &Silent).expect("a small scene bakes");
+}
+
+/// Times with filtering, as a set of one lane has them.
+pub const PLAYED: Contender = Contender::Baked(Playback { bits: Bits::Sixteen, lanes: 1, filter: Filter::Bilinear });
+
+/// What the CPU finds of a set, three times of the day through two cameras.
+pub fn compared(set: &Path, contenders: &[Contender], against: Contender) -> Outcome {
+    let stage = Stage::read(set).expect("a set").without_times();
+    let look = |eye_m: DVec3| {
+        let camera = Camera::look_at(eye_m - stage.scene.centre_m, -stage.scene.centre_m, 0.8).expect("two points");
+        View::new(&camera, [160, 90], &stage.scene)
+    };
+    let views = [look(DVec3::new(4.0, 3.0, 5.0)), look(DVec3::new(-1.0, 1.5, 3.0))];
+    let sets = [SetOnDisk::read(set).expect("a set")];
+    let contest = Contest {
+        sets: &sets,
+        gpu: None,
+        contenders,
+        against,
+        views: &views,
+        times: &[0.3, 0.5, 0.7],
+        map_size_texels: None,
+        rounds: 1,
+    };
+    contest.run(stage, &|| true).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Rays over the sun's disc, few enough for a test.
+pub const TRUE: Contender = Contender::Truth(Truth::Soft { rays: 16 });
+
+/// The mean error of a set against truth.
+pub fn mean_error(set: &Path) -> f64 {
+    compared(set, &[PLAYED], TRUE).techniques[0].error.mean
+}
