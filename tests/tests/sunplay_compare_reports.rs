@@ -9,11 +9,23 @@ use sunbake_tests::write_scene;
 
 /// Runs the command on something, with small pictures.
 fn compare(source: &Path, report: &Path, options: &[&str]) -> Output {
-    // Cargo builds the command if it has to, and knows where it is.
-    let mut command = Command::new(env!("CARGO"));
-    command.args(["run", "-q", "-p", "sunbake-runtime", "--bin", "sunplay", "--", "compare"]);
-    command.arg(source).arg("-o").arg(report).args(["--size", "96x54", "--rounds", "1"]).args(options);
+    let mut command = sunplay();
+    command.arg("compare").arg(source).arg("-o").arg(report).args(["--size", "96x54", "--rounds", "1"]).args(options);
     command.output().expect("cargo runs")
+}
+
+/// The command: where the whole workspace was built, as `tests/run` does, it lies beside the tests' folder; else cargo builds it,
+/// with all that it is made of once more, since alone it asks for fewer features.
+fn sunplay() -> Command {
+    let is_built = std::env::var_os("SUNBAKE_WORKSPACE_IS_BUILT").is_some();
+    let tests = std::env::current_exe().expect("a test knows where it is");
+    let beside = tests.parent().and_then(Path::parent).map(|folder| folder.join("sunplay"));
+    if let Some(built) = beside.filter(|file| is_built && file.is_file()) {
+        return Command::new(built);
+    }
+    let mut command = Command::new(env!("CARGO"));
+    command.args(["run", "-q", "-p", "sunbake-runtime", "--bin", "sunplay", "--"]);
+    command
 }
 
 fn stderr(output: &Output) -> String {

@@ -46,7 +46,7 @@ pub fn warnings(gpu: Option<&Gpu>) -> Vec<String> {
             "No GPU adapter drew: only what the CPU can draw was compared, and times are those of a CPU from call to picture."
         }
         Some(gpu) if gpu.is_software => {
-            "The adapter is a CPU that plays a GPU. Errors are as a GPU's; times are not, and even their order may differ there."
+            "The adapter is a CPU that plays a GPU. Errors come near a GPU's; times do not, and even their order may differ there."
         }
         Some(_) => return Vec::new(),
     };
