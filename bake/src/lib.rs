@@ -21,6 +21,7 @@ mod loss;
 pub mod loss_map;
 pub mod maps;
 pub mod plan;
+pub mod printing;
 pub mod progress;
 pub mod report;
 pub mod scene;

@@ -1,15 +1,9 @@
-//! Printing. Nobody has to read what is printed, so a reader that went away is no failure; a full disk is.
+//! What the command says.
 
 use super::exit::Failure;
-use std::io::{ErrorKind, Write};
+use sunbake::printing;
 
 /// Prints on stdout.
 pub fn print(text: &str) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::io(format!("cannot print the result: {error}; check where stdout leads to")))
-        }
-        _ => Ok(()),
-    }
+    printing::print(text).map_err(|error| Failure::io(printing::cannot_print(&error)))
 }

@@ -88,11 +88,6 @@ impl Contender {
         }
     }
 
-    /// Whether a GPU has to draw it.
-    pub fn needs_gpu(&self) -> bool {
-        matches!(self, Self::Volumes(_) | Self::Map(_))
-    }
-
     /// Whether a name that somebody asks for means it.
     fn is_meant_by(&self, asked: &str) -> bool {
         let name = self.to_string();

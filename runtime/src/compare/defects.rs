@@ -11,6 +11,7 @@
 //! reach, meets nothing. Soft light's way widens with the disc. Pixels that show another surface than a ray meets, or where one
 //! ends, are not counted.
 
+use super::score::WRONG;
 use super::{EDGE_STEP, mean, neighbours, visibility_difference};
 use crate::image::Raster;
 use crate::light::Moment;
@@ -22,8 +23,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 use sunbake::trace::{Direction, Hit};
 
-/// Difference of visibility beyond which a pixel is wrong.
-const WRONG: f32 = 0.5;
 /// Difference beyond which what is far from any edge counts as a defect.
 const OFF: f32 = 1.0 / 16.0;
 /// Rays that look for light.

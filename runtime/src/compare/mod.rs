@@ -18,7 +18,7 @@ pub use contest::{Contest, ContestError, LitFrame, Outcome, SetOnDisk, codes, li
 pub use defects::Defects;
 pub use limits::{Limit, Limited};
 pub use mask::{FINE_PX, MaskAgreement};
-pub use score::{PENUMBRA, Score, Tally, WRONG, luma, structural_similarity};
+pub use score::{Score, Tally, luma, structural_similarity};
 pub use sheet::{Pair, sheet};
 
 use crate::image::Raster;

@@ -1,6 +1,6 @@
 //! What a report says of the scene, of the machine and of itself.
 
-use super::super::args::CompareArgs;
+use super::args::CompareArgs;
 use super::field::Field;
 use std::path::Path;
 use sunbake::maps::Bits;

@@ -1,9 +1,9 @@
 //! What is compared: sets that are there, or that are baked for as long as it takes.
 
-use super::super::args::CompareArgs;
 use super::super::artist::sun_request;
 use super::super::exit::Failure;
 use super::super::terminal::Terminal;
+use super::args::CompareArgs;
 use super::looks::check;
 use std::collections::BTreeSet;
 use std::path::Path;

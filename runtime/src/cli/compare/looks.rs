@@ -1,9 +1,9 @@
 //! Where to look from, and when.
 
-use super::super::args::CompareArgs;
 use super::super::exit::Failure;
 use super::super::place::{CameraChoice, named};
 use super::super::when::label;
+use super::args::CompareArgs;
 use sunbake::scene::Scene;
 use sunbake::sun::SunPath;
 use sunbake_runtime::camera::{Vantage, vantages};

@@ -1,16 +1,17 @@
 //! `sunplay compare`.
 
 mod about;
+pub mod args;
 mod field;
 mod looks;
 
-use super::args::CompareArgs;
 use super::artist::{open_adapter, set_threads};
 use super::exit::Failure;
 use super::files::png_bytes;
 use super::out::print;
 use super::terminal::Terminal;
 use about::{machine, notes, scene_entry, warnings};
+use args::CompareArgs;
 use field::Field;
 use looks::Looks;
 use sunbake::maps::Bits;

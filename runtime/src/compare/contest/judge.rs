@@ -44,14 +44,13 @@ impl Contest<'_> {
             }
             tally.score()
         });
-        let set = self.set_of(contender);
         let playback = match contender {
             Contender::Baked(playback) => Some(playback),
             _ => None,
         };
         let has_its_lanes = |set: &&SetOnDisk| playback.is_some_and(|one| one.lanes as u64 == set.entry.lanes);
         let has_its_bits = |set: &&SetOnDisk| playback.is_some_and(|one| one.bits.count() == set.entry.bits);
-        let set = set.filter(has_its_lanes);
+        let set = playback.and_then(|one| set_for(self.sets, one)).filter(has_its_lanes);
         TechniqueEntry {
             name: contender.to_string(),
             family: contender.family().into(),
@@ -64,13 +63,6 @@ impl Contest<'_> {
             disk_bytes: set.filter(has_its_bits).map(|set| set.entry.disk_bytes),
             plan: drawn.plan.clone(),
             frames: (0..frames.len()).map(frame).collect(),
-        }
-    }
-
-    fn set_of(&self, contender: Contender) -> Option<&SetOnDisk> {
-        match contender {
-            Contender::Baked(playback) => set_for(self.sets, playback),
-            _ => None,
         }
     }
 }
