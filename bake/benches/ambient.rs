@@ -14,11 +14,11 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::path::Path;
 use std::time::Instant;
-use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, find_ambient};
+use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, solve_ambient};
 use sunbake::atlas::{self, Atlas, AtlasSettings, PageSamples, Sample};
 use sunbake::scene::{Geometry, LoadLimits, Scene, ShadingNormals, load};
 use sunbake::testing::pseudo_random;
-use sunbake::trace::{Scatter, ScatterRoom, ShadowQuery, Tracer};
+use sunbake::trace::{PacketScratch, PacketTracer, ShadowQuery, Tracer};
 
 const SHARED: [&str; 3] =
     ["osrf_city/osrf_city.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
@@ -105,7 +105,7 @@ impl<'a> Page<'a> {
         let texel = |i: usize, points: &mut Vec<AmbientPoint>| {
             points.push(self.point(texels[i]));
         };
-        let runs = find_ambient(engine, texels.len(), texel, |_| true).expect("nobody stops it");
+        let runs = solve_ambient(engine, texels.len(), texel, |_| true).expect("nobody stops it");
         let rays = runs.iter().map(|run| run.rays).sum();
         (runs.iter().flat_map(|run| &run.front).map(|estimate| f64::from(estimate.open)).collect(), rays)
     }
@@ -166,7 +166,7 @@ fn errors(page: &Page, runs: usize) -> Curves {
     let texels: Vec<usize> =
         (0..page.texels.len()).step_by(step).flat_map(|s| s..(s + RUN).min(page.texels.len())).collect();
     let truth = page.open(&page.engine(AmbientSettings { seed: 1, ..settings(TRUTH_RAYS) }), &texels).0;
-    let scatter = Scatter::new(&page.tracer);
+    let scatter = PacketTracer::new(&page.tracer);
     println!(
         "{:<8}{:>12}{:>12}{:>12}{:>12}{:>14}",
         "rays", "us a texel", "rms error", "random: us", "rms error", "at equal time"
@@ -202,8 +202,8 @@ fn rms(found: &[f64], truth: &[f64]) -> f64 {
 
 /// Independent directions, the plain way: no net, no order, no guesses. Backs are asked as well where there are any, since
 /// the estimate asks them too; the fronts are answered.
-fn random(page: &Page, scatter: &Scatter, texels: &[usize], rays: u32) -> Vec<f64> {
-    let mut room = ScatterRoom::default();
+fn random(page: &Page, scatter: &PacketTracer, texels: &[usize], rays: u32) -> Vec<f64> {
+    let mut room = PacketScratch::default();
     let mut state = 0x51_7cc1_b727;
     let mut answer = |&index: &usize| {
         let AmbientPoint { surface, shading_normal } = page.point(index);

@@ -2,7 +2,7 @@
 
 /// A stage of a bake, in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
+pub enum BakeStage {
     /// Reading the scene. Counts nothing.
     Load,
     /// Unwrapping and packing. Counts thousandths.
@@ -21,7 +21,7 @@ pub enum Stage {
     Write,
 }
 
-impl Stage {
+impl BakeStage {
     /// What to call it while it runs.
     pub fn verb(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ pub trait Progress: Sync {
     /// What the stages to come are part of, where a bake is one of many things.
     fn task(&self, _name: &str) {}
     /// A stage starts; `total` is how much it will count, 0 if it does not count.
-    fn start(&self, stage: Stage, total: u64);
+    fn start(&self, stage: BakeStage, total: u64);
     /// The current stage got on by so much.
     fn advance(&self, by: u64);
     /// Whether the bake should stop: it then fails with [`crate::BakeError::Cancelled`], and leaves nothing behind.
@@ -56,6 +56,6 @@ pub trait Progress: Sync {
 pub struct Silent;
 
 impl Progress for Silent {
-    fn start(&self, _stage: Stage, _total: u64) {}
+    fn start(&self, _stage: BakeStage, _total: u64) {}
     fn advance(&self, _by: u64) {}
 }

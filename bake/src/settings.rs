@@ -201,7 +201,7 @@ impl BakeSettings {
     }
 
     /// To keep: one page of 4096, 16 bits, as many layers as anything needs, 512 rays of sky.
-    pub fn last(sun: SunRequest) -> Self {
+    pub fn final_quality(sun: SunRequest) -> Self {
         let ambient = Some(AmbientRequest::with_rays(512));
         Self { page_size_texels: 4096, layer_cap: 8, ambient, max_memory_bytes: 16 << 30, ..Self::standard(sun) }
     }

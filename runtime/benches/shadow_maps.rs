@@ -20,7 +20,7 @@ use sunbake::scene::{LoadLimits, load};
 use sunbake_runtime::compare::Defects;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
-use sunbake_runtime::technique::{Light, ShadowMaps, Technique};
+use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{Day, defects_of};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask};
 use sunbake_runtime::{Moment, Shot, Stage, View};
@@ -125,7 +125,7 @@ impl<'a> Frames<'a> {
             let mut least = [[f64::INFINITY; 3]; 2];
             for _ in 0..self.rounds {
                 for (rival, least) in rivals.iter_mut().zip(&mut least) {
-                    mask(rival, shot, moment, Light::Sun);
+                    mask(rival, shot, moment, LightKind::Sun);
                     let times = rival.report().times.unwrap_or_default();
                     let now = [rival.report().fit_seconds, times.maps, times.light];
                     *least = std::array::from_fn(|k| least[k].min(now[k]));

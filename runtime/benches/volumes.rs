@@ -17,7 +17,7 @@ use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
 use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
-use sunbake_runtime::technique::{Light, Technique, Truth, Volumes};
+use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask, with_solid_leaves};
 use sunbake_runtime::volumes::{Mode, Savings};
 use sunbake_runtime::{Moment, Raster, Shot, Stage, View};
@@ -90,7 +90,7 @@ impl<'a> Frames<'a> {
             let cameras = [Some(front), Some(back), in_shadow].into_iter().flatten();
             let shots = cameras.map(|camera| {
                 let shot = Shot::new(stage, View::new(&camera, [edge_px; 2], &stage.scene));
-                let truth = mask(&mut Truth::Hard, &shot, &moment, Light::Sun);
+                let truth = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);
                 (shot, truth)
             });
             (moment, shots.collect())
@@ -142,7 +142,7 @@ fn measure(gpu: &Gpu, frames: &Frames, rivals: &[VolumeSettings], rounds: usize)
             let mut least = [f64::INFINITY; 2];
             for _ in 0..rounds {
                 volumes.renderer().forget();
-                mask(volumes, &shots[0].0, moment, Light::Sun);
+                mask(volumes, &shots[0].0, moment, LightKind::Sun);
                 if let Some(light) = volumes.report().lights.first() {
                     least = [least[0].min(light.find_seconds), least[1].min(light.overlap_seconds)];
                 }
@@ -154,7 +154,7 @@ fn measure(gpu: &Gpu, frames: &Frames, rivals: &[VolumeSettings], rounds: usize)
             let mut least = vec![[f64::INFINITY; 3]; rivals.len()];
             for _ in 0..rounds {
                 for (volumes, least) in open.iter_mut().zip(&mut least) {
-                    mask(volumes, shot, moment, Light::Sun);
+                    mask(volumes, shot, moment, LightKind::Sun);
                     let report = volumes.report();
                     let times = report.times.unwrap_or_default();
                     let plan = report.lights.first().map_or(0.0, |light| light.plan_seconds);
@@ -163,7 +163,7 @@ fn measure(gpu: &Gpu, frames: &Frames, rivals: &[VolumeSettings], rounds: usize)
                 }
             }
             for ((volumes, cost), least) in open.iter_mut().zip(&mut costs).zip(least) {
-                let seen = mask(volumes, shot, moment, Light::Sun);
+                let seen = mask(volumes, shot, moment, LightKind::Sun);
                 let wrong = seen.pixels.iter().zip(&truth.pixels).filter(|(a, b)| a != b).count();
                 let triangles = volumes.report().lights.first().map_or(0, |light| light.triangles);
                 let fill = volumes.renderer().fill(&shot.view, moment, false).unwrap_or_default();
@@ -266,7 +266,7 @@ fn suns(gpu: &Gpu, name: &str, frames: &Frames) {
     println!("| suns | frame | of it silhouettes | mean error | pixels off by more than 1/16 |");
     println!("|---|---|---|---|---|");
     let truth = |(moment, shots): &(Moment, Vec<Seen>)| -> Vec<Raster<f32>> {
-        shots.iter().map(|(shot, _)| mask(&mut Truth::Soft { rays: SOFT_RAYS }, shot, moment, Light::Sun)).collect()
+        shots.iter().map(|(shot, _)| mask(&mut Truth::Soft { rays: SOFT_RAYS }, shot, moment, LightKind::Sun)).collect()
     };
     let truths: Vec<Vec<Raster<f32>>> = frames.all.iter().map(truth).collect();
     for count in [1, 4, 16, 64] {
@@ -277,7 +277,7 @@ fn suns(gpu: &Gpu, name: &str, frames: &Frames) {
         for ((moment, shots), truths) in frames.all.iter().zip(&truths) {
             for ((shot, _), truth) in shots.iter().zip(truths) {
                 volumes.renderer().forget();
-                let seen = mask(&mut volumes, shot, moment, Light::Sun);
+                let seen = mask(&mut volumes, shot, moment, LightKind::Sun);
                 let report = volumes.report();
                 let times = report.times.unwrap_or_default();
                 let found: f64 = report.lights.iter().map(|light| light.find_seconds).sum();

@@ -24,7 +24,7 @@ const SIZE: [u32; 2] = [360, 220];
 const SUPERSAMPLE: u32 = 2;
 const MODELS: [(AmbientModel, &str); 4] = [
     (AmbientModel::Hemisphere, "the normal alone"),
-    (AmbientModel::Openness, "ambient occlusion"),
+    (AmbientModel::Occlusion, "ambient occlusion"),
     (AmbientModel::Bent, "bent normals"),
     (AmbientModel::Sky, "the sky in harmonics"),
 ];

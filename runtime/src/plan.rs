@@ -26,7 +26,7 @@ pub struct Need {
     /// The same in words, and what is not counted; of what is off, what it would take.
     pub cost: String,
     /// The flag, or the property of the set or the scene, that would turn it over.
-    pub turned_over_by: String,
+    pub toggled_by: String,
 }
 
 /// All verdicts, and what they come to.
@@ -58,7 +58,7 @@ impl DrawPlan {
             on: need.is_on,
             why: need.why.clone(),
             cost: need.cost.clone(),
-            turned_over_by: need.turned_over_by.clone(),
+            toggled_by: need.toggled_by.clone(),
         };
         self.needs.iter().map(entry).collect()
     }

@@ -35,7 +35,7 @@ fn ambient_model(page: &PageMaps) -> AmbientModel {
         None => AmbientModel::Hemisphere,
         Some(ambient) if ambient.front.sky.is_some() => AmbientModel::Sky,
         Some(ambient) if ambient.front.bent.is_some() => AmbientModel::Bent,
-        Some(_) => AmbientModel::Openness,
+        Some(_) => AmbientModel::Occlusion,
     }
 }
 
@@ -43,7 +43,7 @@ fn ambient_model(page: &PageMaps) -> AmbientModel {
 pub fn ambient_bytes(variant: &PageVariant) -> u64 {
     let a_side = match variant.ambient {
         AmbientModel::Hemisphere => 0,
-        AmbientModel::Openness => 2,
+        AmbientModel::Occlusion => 2,
         AmbientModel::Bent => 2 + 8,
         AmbientModel::Sky => 3 * 8,
     };
@@ -124,7 +124,7 @@ impl<'a> Page<'a> {
     }
 
     /// Light from all around on a surface with this normal, turned to the eye; `is_back`: the eye is behind the surface.
-    /// Twin of `ambient_hemisphere.wgsl`, `ambient_openness.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
+    /// Twin of `ambient_hemisphere.wgsl`, `ambient_occlusion.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
     pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, around: &Around) -> Vec3 {
         let light = around.daylight;
         let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);

@@ -4,7 +4,7 @@ use crate::image::Raster;
 use crate::light::Moment;
 use crate::playback::{Around, Page};
 use crate::shot::Shot;
-use crate::stage::{Corners, Stage};
+use crate::stage::{CornerAttributes, Stage};
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 use sunbake::scene::Material;
@@ -76,7 +76,7 @@ pub fn towards_eye(normal: Vec3, front: Vec3, ray: Vec3) -> Vec3 {
     if front.dot(ray) > 0.0 { -normal } else { normal }
 }
 
-fn texture_color(shot: &Shot, corners: &Corners, hit: &Hit, front: Vec3, ray: Vec3) -> Vec4 {
+fn texture_color(shot: &Shot, corners: &CornerAttributes, hit: &Hit, front: Vec3, ray: Vec3) -> Vec4 {
     let stage: &Stage = shot.stage;
     let triangle = hit.triangle as usize;
     let Some(texture) = stage.material(triangle).base_color_texture else { return Vec4::ONE };

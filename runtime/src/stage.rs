@@ -61,7 +61,7 @@ pub struct Chart {
 
 /// What the three corners of a triangle carry.
 #[derive(Debug, Clone, Copy)]
-pub struct Corners {
+pub struct CornerAttributes {
     /// Page coordinates of the maps.
     pub page_uv: [Vec2; 3],
     /// Coordinates of the base colour texture; zero where there is none.
@@ -265,13 +265,13 @@ impl Stage {
     }
 
     /// What the corners of a triangle carry.
-    pub fn corners(&self, triangle: usize) -> Corners {
+    pub fn corners(&self, triangle: usize) -> CornerAttributes {
         let surface = self.geometry.surface(triangle);
         let mesh = self.mesh(surface.instance);
         let material = self.scene.material(surface.instance);
         let vertices = [0, 1, 2].map(|k| mesh.indices[3 * surface.mesh_triangle + k] as usize);
         let front = self.geometry.normal(triangle).as_vec3();
-        Corners {
+        CornerAttributes {
             page_uv: self.page_uvs(surface.instance, mesh, vertices),
             image_uv: match &material.base_color_texture {
                 Some(texture) => image_uvs(mesh, texture, surface.mesh_triangle),

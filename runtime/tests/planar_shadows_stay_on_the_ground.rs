@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
-use sunbake_runtime::technique::{Light, ShadowMaps, Technique, Truth};
+use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
 use sunbake_runtime::testing::maps::places;
 use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, mask, under_sun};
 use sunbake_runtime::{Shot, Stage};
@@ -52,7 +52,7 @@ fn j1_a_caster_below_the_plane_casts_nothing_on_it() {
     let half = ground().block(Vec3::new(-1.0, -3.0, -1.0), Vec3::new(1.0, 1.0, 1.0)).build();
     let stage = under_sun(half, ASLANT);
     let shot = Shot::new(&stage, from_aside(&stage));
-    let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), Light::Sun).pixels;
+    let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), LightKind::Sun).pixels;
     let seen = seen(&gpu, &shot, Variant::Planar);
     let differ = on_ground(&shot).into_iter().filter(|(i, _)| seen[*i] != truth[*i]).count();
     assert!(differ <= 8, "{differ}");
@@ -88,7 +88,7 @@ fn j1_a_finite_ground_clips_its_shadows_and_nothing_else_is_shaded() {
     let shot = Shot::new(&stage, from_aside(&stage));
     let seen = seen(&gpu, &shot, Variant::Planar);
     let moment = stage.moment(0.5);
-    let truth = mask(&mut Truth::Hard, &shot, &moment, Light::Sun).pixels;
+    let truth = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun).pixels;
     let mut dark = 0;
     for (pixel, hit) in shot.hits().iter().enumerate() {
         let Some(hit) = hit else {
@@ -130,7 +130,7 @@ fn a_ground_that_lies_there_twice_or_turned_over_does_not_shade_itself() {
         let scene = || SceneBuilder::new().soup(&level).soup(&twin);
         let stage = under_sun(scene().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5)).build(), ASLANT);
         let shot = Shot::new(&stage, from_aside(&stage));
-        let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), Light::Sun).pixels;
+        let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), LightKind::Sun).pixels;
         for variant in [Variant::Planar, Variant::Ground, Variant::Cascades] {
             let seen = seen(&gpu, &shot, variant);
             let differ = on_ground(&shot).into_iter().filter(|(i, _)| (seen[*i] - truth[*i]).abs() > 0.6).count();

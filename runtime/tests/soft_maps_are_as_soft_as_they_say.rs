@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
-use sunbake_runtime::technique::{Light, ShadowMaps, Technique, Truth};
+use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
 use sunbake_runtime::testing::maps::places;
 use sunbake_runtime::testing::masks::{gpu, mask};
 use sunbake_runtime::testing::{standing_sun, view};
@@ -69,7 +69,7 @@ fn a_sun_on_the_horizon_lights_a_wall_by_the_half_that_has_risen() {
         let stage = Stage::plain(scene.build(), Some(standing_sun(DVec3::new(1.0, sine, 0.0), RADIUS_RAD)));
         let shot = Shot::new(&stage, view(&stage, DVec3::new(3.0, 1.5, 0.3), DVec3::new(-1.5, 1.5, 0.0), [32, 32]));
         let moment = stage.moment(0.5);
-        let truth = mask(&mut Truth::Soft { rays: 1024 }, &shot, &moment, Light::Sun).pixels;
+        let truth = mask(&mut Truth::Soft { rays: 1024 }, &shot, &moment, LightKind::Sun).pixels;
         let mut maps = ShadowMaps::new(&gpu, &stage, MapSettings::new(Variant::Pcss)).unwrap();
         let seen = maps.visibility(&shot, &moment).unwrap().pixels;
         let middle = 16 * 32 + 16;

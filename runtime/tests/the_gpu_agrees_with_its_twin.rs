@@ -126,7 +126,7 @@ fn noisy_ambient(stage: &Stage, sides: usize) -> AmbientMaps {
 fn every_model_of_ambient_light() {
     let gpu = gpu();
     for (sides, model) in [1, 2].into_iter().flat_map(|sides| {
-        [AmbientModel::Hemisphere, AmbientModel::Openness, AmbientModel::Bent, AmbientModel::Sky].map(|m| (sides, m))
+        [AmbientModel::Hemisphere, AmbientModel::Occlusion, AmbientModel::Bent, AmbientModel::Sky].map(|m| (sides, m))
     }) {
         let mut stage = bake(everything(Wrap::Repeat), Some(equinox(35.0)), 24, Bits::Eight);
         stage.pages[0].ambient = Some(noisy_ambient(&stage, sides));

@@ -8,7 +8,7 @@ use sunbake::testing::{SceneBuilder, floor, icosphere, opaque};
 use sunbake_runtime::compare::{Agreement, MaskAgreement, color_difference, edges, mean, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::shade::lit_picture;
-use sunbake_runtime::technique::{Light, Technique, Truth, Volumes};
+use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::mask;
 use sunbake_runtime::testing::{equinox, standing_sun, view};
 use sunbake_runtime::{Moment, Raster, Shot, Stage};
@@ -50,8 +50,8 @@ fn the_picture_is_ambient_light_first_and_each_light_where_its_stencil_is_zero()
         let sun = Moment { lamp: None, ..both };
         let lamp = Moment { lamp: both.lamp, ..both.without_sun() };
         for (what, moment) in [("sun and lamp", both), ("sun", sun), ("lamp", lamp), ("no sky", both.without_sky())] {
-            let seen = mask(&mut Truth::Hard, &shot, &moment, Light::Sun);
-            let of_lamp = moment.lamp.map(|_| mask(&mut Truth::Hard, &shot, &moment, Light::Lamp));
+            let seen = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);
+            let of_lamp = moment.lamp.map(|_| mask(&mut Truth::Hard, &shot, &moment, LightKind::Lamp));
             let expected = lit_picture(&shot, &moment, &seen, of_lamp.as_ref());
             let found = volumes.color(&shot, &moment).unwrap();
             let at_edges: Vec<bool> = match &of_lamp {
@@ -69,12 +69,12 @@ fn many_hard_suns_make_a_soft_one_and_more_of_them_a_better_one() {
     let gpu = gpu();
     let stage = Stage::plain(scene(), Some(standing_sun(DVec3::new(0.5, 0.7, 0.3), 0.06)));
     let (shot, moment) = (shot(&stage), stage.moment(0.5));
-    let truth = mask(&mut Truth::Soft { rays: 1024 }, &shot, &moment, Light::Sun);
+    let truth = mask(&mut Truth::Soft { rays: 1024 }, &shot, &moment, LightKind::Sun);
     let mut errors = Vec::new();
     for count in [1, 4, 16, 64] {
         let settings = VolumeSettings { sun_samples: count, ..VolumeSettings::default() };
         let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
-        let seen = mask(&mut volumes, &shot, &moment, Light::Sun);
+        let seen = mask(&mut volumes, &shot, &moment, LightKind::Sun);
         let is_step = |v: &f32| (v * count as f32 - (v * count as f32).round()).abs() < 1e-3;
         assert!(seen.pixels.iter().all(|v| is_step(v) && (0.0..=1.0001).contains(v)), "{count}");
         errors.push(mean(&visibility_difference(&seen, &truth)));
@@ -88,10 +88,10 @@ fn many_hard_suns_make_a_soft_one_and_more_of_them_a_better_one() {
 fn the_comparer_of_masks_can_fail() {
     let stage = Stage::plain(scene(), Some(equinox(40.0)));
     let (shot, moment) = (shot(&stage), stage.moment(0.35));
-    let truth = mask(&mut Truth::Hard, &shot, &moment, Light::Sun);
+    let truth = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);
     let depth = |i: usize| shot.hits()[i].map_or(f64::INFINITY, |hit| hit.distance_m / shot.ray(i).as_dvec3().length());
     let depths_m: Vec<f32> = (0..truth.pixels.len()).map(|i| depth(i) as f32).collect();
-    let compare = |mask: &Raster<f32>| MaskAgreement::new(&shot, &moment, Light::Sun, mask, &truth, &depths_m);
+    let compare = |mask: &Raster<f32>| MaskAgreement::new(&shot, &moment, LightKind::Sun, mask, &truth, &depths_m);
     assert_eq!(
         compare(&truth),
         MaskAgreement { in_band: compare(&truth).in_band, pixels: 160 * 120, ..Default::default() }
@@ -113,6 +113,6 @@ fn the_comparer_of_masks_can_fail() {
         assert_eq!(compare(&corrupted).unexplained, [at]);
     }
     // A sun that stands twelve degrees off.
-    let off = mask(&mut Truth::Hard, &shot, &stage.moment(0.35 + 12.0 / 180.0), Light::Sun);
+    let off = mask(&mut Truth::Hard, &shot, &stage.moment(0.35 + 12.0 / 180.0), LightKind::Sun);
     assert!(compare(&off).unexplained.len() > 20);
 }

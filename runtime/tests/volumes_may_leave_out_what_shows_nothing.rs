@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, floor};
 use sunbake_runtime::gpu::VolumeSettings;
-use sunbake_runtime::technique::{Light, Truth, Volumes};
+use sunbake_runtime::technique::{LightKind, Truth, Volumes};
 use sunbake_runtime::testing::masks::{ASLANT, assert_right, from_aside, gpu, ground, mask, under_lamp, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Mode, Savings};
@@ -26,17 +26,17 @@ fn v14_volumes_without_end_reach_far_surfaces_and_leave_the_background() {
         view(&stage, DVec3::new(9e3, 2e3, 5e3), DVec3::new(-6e4, 0.0, -1.2e4), SIZE),
         view(&stage, DVec3::new(-3e4, 900.0, 3e3), DVec3::new(-9e4, 800.0, -1.6e4), SIZE),
     ];
-    let found = assert_right(&gpu, "v14", &stage, &views, &stage.moment(0.5), Light::Sun);
+    let found = assert_right(&gpu, "v14", &stage, &views, &stage.moment(0.5), LightKind::Sun);
     assert!(found.in_band > 100);
     // A block alone before the sky: nothing behind it is dark, whatever volume it lies in.
     let stage =
         under_lamp(SceneBuilder::new().block(Vec3::splat(-0.5), Vec3::splat(0.5)).build(), DVec3::new(0.9, 1.4, 0.3));
     let moment = stage.moment(0.0);
     let views = [from_aside(&stage), view(&stage, DVec3::new(-0.7, -0.8, -0.2), DVec3::new(-3.0, -4.0, -1.0), SIZE)];
-    assert_right(&gpu, "v14, lamp", &stage, &views, &moment, Light::Lamp);
+    assert_right(&gpu, "v14, lamp", &stage, &views, &moment, LightKind::Lamp);
     let shot = Shot::new(&stage, views[1]);
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
-    assert!(mask(&mut volumes, &shot, &moment, Light::Lamp).pixels.iter().all(|&v| v == 1.0));
+    assert!(mask(&mut volumes, &shot, &moment, LightKind::Lamp).pixels.iter().all(|&v| v == 1.0));
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn v15_each_saving_gives_the_same_mask() {
     let stage = under_sun(scene.build(), ASLANT);
     let moment = stage.moment(0.5);
     let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.3, 0.1), DVec3::new(2.0, 0.3, 2.0), SIZE)];
-    assert_right(&gpu, "v15", &stage, &views, &moment, Light::Sun);
+    assert_right(&gpu, "v15", &stage, &views, &moment, LightKind::Sun);
     let without = |edit: fn(&mut Savings)| {
         let mut savings = Savings::default();
         edit(&mut savings);
@@ -74,9 +74,9 @@ fn v15_each_saving_gives_the_same_mask() {
         let of = |savings| {
             let settings = VolumeSettings { savings, ..VolumeSettings::default() };
             let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
-            let seen = mask(&mut volumes, &shot, &moment, Light::Sun).pixels;
+            let seen = mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels;
             // A second frame, for what is kept from the first.
-            assert_eq!(mask(&mut volumes, &shot, &moment, Light::Sun).pixels, seen);
+            assert_eq!(mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels, seen);
             (seen, volumes.report().lights[0].triangles)
         };
         let (expected, triangles) = of(Savings::default());
@@ -98,18 +98,18 @@ fn v16_finite_volumes_equal_endless_ones_within_the_lamps_range() {
     let stage = under_lamp(scene.build(), DVec3::new(0.2, 1.7, 0.1));
     let views = [from_aside(&stage), view(&stage, DVec3::new(1.5, 0.5, -1.6), DVec3::new(5.0, 0.0, -4.0), SIZE)];
     let endless = stage.moment(0.0);
-    assert_right(&gpu, "v16", &stage, &views, &endless, Light::Lamp);
+    assert_right(&gpu, "v16", &stage, &views, &endless, LightKind::Lamp);
     let range_m = 3.5;
     let mut finite = endless;
     finite.lamp.as_mut().unwrap().range_m = range_m;
-    assert_right(&gpu, "v16, finite", &stage, &views, &finite, Light::Lamp);
+    assert_right(&gpu, "v16, finite", &stage, &views, &finite, LightKind::Lamp);
     for view in views {
         let shot = Shot::new(&stage, view);
         let of = |moment: &Moment, mode| {
             let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings { mode, ..VolumeSettings::default() }).unwrap();
-            mask(&mut volumes, &shot, moment, Light::Lamp).pixels
+            mask(&mut volumes, &shot, moment, LightKind::Lamp).pixels
         };
-        let truth = mask(&mut Truth::Hard, &shot, &endless, Light::Lamp);
+        let truth = mask(&mut Truth::Hard, &shot, &endless, LightKind::Lamp);
         let expected = of(&endless, Mode::Planned);
         let lamp_m = endless.lamp.unwrap().position_m;
         for mode in [Mode::Planned, Mode::ZFail, Mode::Triangles, Mode::Gpu] {
@@ -159,13 +159,13 @@ fn k1_the_sun_goes_round_and_culling_changes_no_pixel() {
         let of = |savings| {
             let settings = VolumeSettings { savings, ..VolumeSettings::default() };
             let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
-            (mask(&mut volumes, &shot, &moment, Light::Sun).pixels, volumes.report().lights[0].plan)
+            (mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels, volumes.report().lights[0].plan)
         };
         let ((seen, plan), (expected, _)) = (of(Savings::default()), of(Savings::NONE));
         assert_eq!(seen, expected, "sun at {turn}0 degrees");
         culled += plan.out_of_view + plan.shading_nothing;
         if turn % 9 == 0 {
-            assert_right(&gpu, "k1", &stage, &[shot.view], &moment, Light::Sun);
+            assert_right(&gpu, "k1", &stage, &[shot.view], &moment, LightKind::Sun);
         }
     }
     assert!(culled > 36, "nothing was left out");
@@ -196,13 +196,13 @@ fn k2_hulls_of_view_and_light_may_be_degenerate() {
     for (i, at) in places.into_iter().enumerate() {
         let stage = under_lamp(scene(), at);
         let view = view(&stage, eye, target, SIZE);
-        assert_right(&gpu, &format!("k2, lamp {i}"), &stage, &[view], &stage.moment(0.0), Light::Lamp);
+        assert_right(&gpu, &format!("k2, lamp {i}"), &stage, &[view], &stage.moment(0.0), LightKind::Lamp);
     }
     // The sun along the line of sight, either way.
     for towards in [eye - target, DVec3::new(-3.0, 0.3, -2.8)] {
         let stage = under_sun(scene(), towards);
         let views =
             [view(&stage, eye, target, SIZE), view(&stage, target + DVec3::Y, target + DVec3::Y + towards, SIZE)];
-        assert_right(&gpu, "k2, sun", &stage, &views, &stage.moment(0.5), Light::Sun);
+        assert_right(&gpu, "k2, sun", &stage, &views, &stage.moment(0.5), LightKind::Sun);
     }
 }

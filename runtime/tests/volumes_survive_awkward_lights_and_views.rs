@@ -7,7 +7,7 @@ use sunbake::testing::{SceneBuilder, block, floor, icosphere, pseudo_random};
 use sunbake_runtime::compare::{Agreement, MaskAgreement, color_difference, edges};
 use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::shade::lit_picture;
-use sunbake_runtime::technique::{Light, Technique, Truth, Volumes};
+use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{
     ASLANT, assert_right, assert_ways_agree, beside_truth, from_aside, gpu, ground, lamp_at, mask, under_lamp,
     under_sun,
@@ -32,7 +32,7 @@ fn one_may_look_into_a_finite_volume_through_its_far_end() {
         view(&stage, DVec3::new(6.0, 7.0, 0.4), DVec3::new(2.0, 0.0, 0.0), SIZE),
         view(&stage, DVec3::new(5.0, 4.6, 0.1), DVec3::new(1.5, 0.0, 0.0), SIZE),
     ];
-    assert_right(&gpu(), "far end", &stage, &views, &with_range(&stage, 3.0), Light::Lamp);
+    assert_right(&gpu(), "far end", &stage, &views, &with_range(&stage, 3.0), LightKind::Lamp);
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_finite_volume_ends_beyond_the_range_of_what_is_nearest_to_the_lamp() {
     let wall = floor(Vec2::new(-2.5, -2.5), Vec2::new(2.5, 2.5), 1.0);
     let stage = under_lamp(ground().soup(&wall).build(), DVec3::new(0.1, 1.2, -0.2));
     let views = [view(&stage, DVec3::new(5.5, 0.8, 4.9), DVec3::new(0.0, 0.2, 0.0), SIZE), from_aside(&stage)];
-    assert_right(&gpu(), "wide wall", &stage, &views, &with_range(&stage, 5.0), Light::Lamp);
+    assert_right(&gpu(), "wide wall", &stage, &views, &with_range(&stage, 5.0), LightKind::Lamp);
 }
 
 #[test]
@@ -61,8 +61,8 @@ fn every_way_agrees_about_a_lamp_that_touches_a_caster() {
             let name = format!("touching, place {i}");
             // A lamp in a face, up to rounding, is on neither side of it: then truth is no judge.
             match (at - middle).length() > 5e-5 && i > 2 {
-                true => assert_right(&gpu, &name, &stage, &views, &moment, Light::Lamp),
-                false => assert_ways_agree(&gpu, &name, &stage, &views, &moment, Light::Lamp),
+                true => assert_right(&gpu, &name, &stage, &views, &moment, LightKind::Lamp),
+                false => assert_ways_agree(&gpu, &name, &stage, &views, &moment, LightKind::Lamp),
             };
         }
     }
@@ -81,10 +81,10 @@ fn a_room_modelled_from_inside_shades_what_is_in_it() {
         [inside, view(stage, DVec3::new(8.0, 7.0, 6.0), DVec3::new(0.0, 0.6, 0.0), SIZE)]
     };
     let stage = under_sun(scene(), ASLANT);
-    assert_right(&gpu, "room, sun", &stage, &views(&stage), &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu, "room, sun", &stage, &views(&stage), &stage.moment(0.5), LightKind::Sun);
     for at in [DVec3::new(1.1, 2.1, -0.3), DVec3::new(4.0, 5.0, 1.0)] {
         let stage = under_lamp(scene(), at);
-        assert_right(&gpu, "room, lamp", &stage, &views(&stage), &stage.moment(0.0), Light::Lamp);
+        assert_right(&gpu, "room, lamp", &stage, &views(&stage), &stage.moment(0.0), LightKind::Lamp);
     }
 }
 
@@ -96,13 +96,13 @@ fn what_culling_leaves_is_enough() {
     let roof = floor(Vec2::new(7.0, -2.0), Vec2::new(11.0, 2.0), 9.0);
     let stage = under_sun(SceneBuilder::new().soup(&slab).soup(&roof).build(), DVec3::new(1.0, 1.0, 0.0));
     let above = view(&stage, DVec3::new(0.0, 3.0, 8.0), DVec3::ZERO, SIZE);
-    assert_right(&gpu, "scissor", &stage, &[above], &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu, "scissor", &stage, &[above], &stage.moment(0.5), LightKind::Sun);
     // A flat caster a little above what it shades.
     let sheet = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 0.02);
     let beneath = floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.018);
     let stage = under_sun(SceneBuilder::new().soup(&sheet).soup(&beneath).build(), DVec3::new(0.9, 0.1, 0.05));
     let low = view(&stage, DVec3::new(-2.0, 0.3, 0.1), DVec3::new(-1.0, 0.0, 0.0), SIZE);
-    assert_right(&gpu, "flat", &stage, &[low], &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu, "flat", &stage, &[low], &stage.moment(0.5), LightKind::Sun);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn a_grazing_sun_loses_shadows_no_deeper_than_a_64th_of_a_pixel() {
             let shot = Shot::new(&stage, view);
             let of = |mode| {
                 let settings = VolumeSettings { mode, ..VolumeSettings::default() };
-                mask(&mut Volumes::new(&gpu, &stage, settings).unwrap(), &shot, &moment, Light::Sun)
+                mask(&mut Volumes::new(&gpu, &stage, settings).unwrap(), &shot, &moment, LightKind::Sun)
             };
             let seen = of(Mode::Planned);
             assert!([Mode::ZFail, Mode::ZPass, Mode::Gpu].into_iter().all(|mode| of(mode) == seen), "modes differ");
@@ -129,7 +129,7 @@ fn a_grazing_sun_loses_shadows_no_deeper_than_a_64th_of_a_pixel() {
             let differ = prisms.pixels.iter().zip(&seen.pixels).filter(|(a, b)| a != b).count();
             println!("a curb of {height} m: {differ} pixels of prisms differ");
             assert!(differ <= seen.pixels.len() / 1000, "{differ} pixels of prisms differ");
-            let truth = mask(&mut Truth::Hard, &shot, &moment, Light::Sun);
+            let truth = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);
             for (i, hit) in shot.hits().iter().enumerate() {
                 let Some(hit) = hit.filter(|_| seen.pixels[i] == 1.0 && truth.pixels[i] == 0.0) else { continue };
                 let place_m = stage.geometry.point(hit.triangle as usize, hit.barycentric) + stage.scene.centre_m;
@@ -153,7 +153,7 @@ fn lights_that_follow_each_other_find_nothing_of_the_last() {
     for t in [0.2, 0.5, 0.8, 0.5] {
         let moment = stage.moment(t);
         let mut fresh = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
-        let seen = [&mut moving, &mut fresh].map(|volumes| mask(volumes, &shot, &moment, Light::Sun).pixels);
+        let seen = [&mut moving, &mut fresh].map(|volumes| mask(volumes, &shot, &moment, LightKind::Sun).pixels);
         assert!(seen[0] == seen[1], "at {t}");
     }
     // A sun that shades, then a lamp whose range holds no caster: what the sun left in the stencil is not the lamp's.
@@ -161,8 +161,8 @@ fn lights_that_follow_each_other_find_nothing_of_the_last() {
     let shot = Shot::new(&stage, from_aside(&stage));
     let moment = Moment { lamp: with_range(&stage, 1.2).lamp, ..stage.moment(0.4) };
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
-    let seen = mask(&mut Truth::Hard, &shot, &moment, Light::Sun);
-    let of_lamp = mask(&mut Truth::Hard, &shot, &moment, Light::Lamp);
+    let seen = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);
+    let of_lamp = mask(&mut Truth::Hard, &shot, &moment, LightKind::Lamp);
     let expected = lit_picture(&shot, &moment, &seen, Some(&of_lamp));
     let found = volumes.color(&shot, &moment).unwrap();
     let at_edges: Vec<bool> = edges(&shot, &seen).iter().zip(edges(&shot, &of_lamp)).map(|(a, b)| *a || b).collect();
@@ -217,15 +217,15 @@ fn scenes_made_at_random_are_right() {
         let stage = under_sun(scene.clone(), towards);
         let views: Vec<View> = eyes.iter().map(|[eye, target]| view(&stage, *eye, *target, [96, 96])).collect();
         let name = format!("random {seed}");
-        let mut add = |stage: &Stage, moment: &Moment, light: Light| {
+        let mut add = |stage: &Stage, moment: &Moment, light: LightKind| {
             let (found, others) = beside_truth(&gpu, &name, stage, &views, moment, light);
             all.add(&found);
             differ += others.iter().map(|(_, count)| count).sum::<usize>();
         };
-        add(&stage, &stage.moment(0.5), Light::Sun);
+        add(&stage, &stage.moment(0.5), LightKind::Sun);
         let stage = under_lamp(scene, lamp);
-        add(&stage, &stage.moment(0.0), Light::Lamp);
-        add(&stage, &with_range(&stage, 2.0), Light::Lamp);
+        add(&stage, &stage.moment(0.0), LightKind::Lamp);
+        add(&stage, &with_range(&stage, 2.0), LightKind::Lamp);
     }
     // Seven ways are compared with one: walls that cancel within a shadow do so up to the last bit of a depth.
     println!("{differ} pixels of other ways differ");

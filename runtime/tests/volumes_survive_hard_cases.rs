@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Material, Mesh, Scene};
 use sunbake::testing::{SceneBuilder, block, floor, icosphere, opaque};
 use sunbake_runtime::gpu::VolumeSettings;
-use sunbake_runtime::technique::{Light, Technique, Volumes};
+use sunbake_runtime::technique::{LightKind, Technique, Volumes};
 use sunbake_runtime::testing::masks::{ASLANT, assert_right, from_aside, gpu, ground, mask, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Casters, Mode};
@@ -26,7 +26,7 @@ fn assert_sun(name: &str, scene: Scene, towards: DVec3) {
     let stage = under_sun(scene, towards);
     let views = [from_aside(&stage), view(&stage, DVec3::new(-5.2, 0.8, -4.9), DVec3::new(0.0, 0.5, 0.0), SIZE)];
     let moment = stage.moment(0.5);
-    assert_right(&gpu(), name, &stage, &views, &moment, Light::Sun);
+    assert_right(&gpu(), name, &stage, &views, &moment, LightKind::Sun);
 }
 
 #[test]
@@ -37,12 +37,12 @@ fn v1_the_eye_is_inside_a_volume() {
     let inside = view(&stage, DVec3::new(2.0, 1.0, 2.2), DVec3::new(-0.5, 0.2, -0.3), SIZE);
     let looking_out = view(&stage, DVec3::new(0.0, 1.0, 0.0), DVec3::new(6.0, 0.0, 1.0), SIZE);
     let moment = stage.moment(0.5);
-    assert_right(&gpu, "v1", &stage, &[inside, looking_out], &moment, Light::Sun);
+    assert_right(&gpu, "v1", &stage, &[inside, looking_out], &moment, LightKind::Sun);
     // Left to itself, the plan counts the roof behind the surface; asked for z-pass, it says that it did not.
     let shot = Shot::new(&stage, inside);
     for mode in [Mode::Planned, Mode::ZPass] {
         let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings { mode, ..VolumeSettings::default() }).unwrap();
-        mask(&mut volumes, &shot, &moment, Light::Sun);
+        mask(&mut volumes, &shot, &moment, LightKind::Sun);
         let plan = volumes.report().lights[0].plan;
         assert!(plan.z_fail >= 1 && (plan.replaced >= 1) == (mode == Mode::ZPass), "{mode}: {plan:?}");
         assert_eq!(volumes.plan().iter().any(|line| line.contains("z-pass would be wrong")), mode == Mode::ZPass);
@@ -59,9 +59,9 @@ fn v2_the_near_plane_passes_through_a_volumes_wall() {
     for step in 0..64 {
         let x = 1.0 + (f64::from(step) - 31.5) * 4e-7;
         let shot = Shot::new(&stage, view(&stage, DVec3::new(x, 1.0, 0.2), DVec3::new(x - 3.0, 0.0, -2.0), [48, 48]));
-        let found = sunbake_runtime::testing::masks::agreement(&mut volumes, &shot, &moment, Light::Sun);
+        let found = sunbake_runtime::testing::masks::agreement(&mut volumes, &shot, &moment, LightKind::Sun);
         assert!(found.unexplained.is_empty() && found.at_fine_edges <= 4, "step {step}: {}", found.sentence());
-        let lit = mask(&mut volumes, &shot, &moment, Light::Sun).pixels.iter().filter(|&&v| v == 1.0).count();
+        let lit = mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels.iter().filter(|&&v| v == 1.0).count();
         assert!((300..2200).contains(&lit), "step {step} flashes: {lit} of 2304 pixels are lit");
     }
 }
@@ -75,7 +75,7 @@ fn v3_the_near_plane_passes_through_the_caster() {
             view(&stage, DVec3::new(0.3, y, 0.2), DVec3::new(3.0, 0.0, -2.5), [64, 64])
         })
         .collect();
-    assert_right(&gpu(), "v3", &stage, &views, &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu(), "v3", &stage, &views, &stage.moment(0.5), LightKind::Sun);
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn v5_255_256_and_257_casters_lie_in_a_stack() {
         );
         let shot = Shot::new(&stage, from_aside(&stage));
         let moment = stage.moment(0.5);
-        assert_right(&gpu, &format!("v5, {count}"), &stage, &[shot.view], &moment, Light::Sun);
+        assert_right(&gpu, &format!("v5, {count}"), &stage, &[shot.view], &moment, LightKind::Sun);
         // Counted without a stencil, as many prisms hold the darkest pixels as there are casters: at 256 a stencil that
         // wraps would be back at none.
         let mode = Mode::ZFail;
@@ -117,7 +117,7 @@ fn v5_255_256_and_257_casters_lie_in_a_stack() {
         let counts = volumes.renderer().counts(&shot.view, &moment, false).unwrap();
         let most = counts.iter().copied().fold(0.0, f32::max);
         assert_eq!(most as usize, count);
-        let seen = mask(&mut volumes, &shot, &moment, Light::Sun);
+        let seen = mask(&mut volumes, &shot, &moment, LightKind::Sun);
         let shown = |i: usize| shot.hits()[i].is_some();
         let differ = (0..counts.len()).filter(|&i| shown(i) && counts[i] > 0.0 && seen.pixels[i] != 0.0).count();
         assert_eq!(differ, 0, "{count}");
@@ -140,9 +140,9 @@ fn v6_casters_that_cross_and_nest_are_right_in_any_order() {
         let builder = order.iter().fold(ground(), |builder, &i| builder.soup(&blocks[i]));
         let stage = under_sun(builder.build(), ASLANT);
         let (view, moment) = (from_aside(&stage), stage.moment(0.5));
-        assert_right(&gpu, "v6", &stage, &[view], &moment, Light::Sun);
+        assert_right(&gpu, "v6", &stage, &[view], &moment, LightKind::Sun);
         let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
-        let seen = mask(&mut volumes, &Shot::new(&stage, view), &moment, Light::Sun).pixels;
+        let seen = mask(&mut volumes, &Shot::new(&stage, view), &moment, LightKind::Sun).pixels;
         assert!(*first.get_or_insert_with(|| seen.clone()) == seen, "{order:?}");
     }
 }
@@ -192,7 +192,7 @@ fn v8_edges_of_three_and_four_triangles_and_a_moebius_strip() {
         })
         .collect();
     let stage = under_sun(ground().soup_of(&moebius, Material { is_double_sided: true, ..opaque() }).build(), ASLANT);
-    assert_right(&gpu(), "v8, moebius", &stage, &[from_aside(&stage)], &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu(), "v8, moebius", &stage, &[from_aside(&stage)], &stage.moment(0.5), LightKind::Sun);
     let counts = Casters::new(&stage).counts;
     assert_eq!((counts.solid_bodies, counts.open_bodies), (0, 2), "a strip with one side bounds nothing");
 }
@@ -248,7 +248,7 @@ fn v11_t_junctions_do_not_leak() {
     let two_sided = Material { is_double_sided: true, ..opaque() };
     let stage = under_sun(ground().soup_of(&roof, two_sided).build(), ASLANT);
     let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.6, 3.0), DVec3::new(0.0, 0.0, -1.0), [256, 256])];
-    let found = assert_right(&gpu(), "v11", &stage, &views, &stage.moment(0.5), Light::Sun);
+    let found = assert_right(&gpu(), "v11", &stage, &views, &stage.moment(0.5), LightKind::Sun);
     // The corners do lie on the edge here, and every prism is closed by itself: what rounding leaves is a hair's breadth, and
     // stays below one pixel in ten thousand.
     assert!(found.at_fine_edges + found.of_other_surfaces <= found.pixels / 10_000, "{}", found.sentence());
@@ -300,7 +300,7 @@ fn v18_mirrored_nodes_cast_and_receive_like_others() {
     let sheared =
         DMat4::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 0.4, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -0.5, 1.0]);
     let stage = under_sun(ground().mesh_of(mesh, opaque(), &[DMat4::IDENTITY, mirror, sheared]).build(), ASLANT);
-    assert_right(&gpu(), "v18", &stage, &[from_aside(&stage)], &stage.moment(0.5), Light::Sun);
+    assert_right(&gpu(), "v18", &stage, &[from_aside(&stage)], &stage.moment(0.5), LightKind::Sun);
     let counts = Casters::new(&stage).counts;
     assert_eq!((counts.solid_bodies, counts.turned_bodies), (6, 0), "mirrored bodies are not inside out");
 }

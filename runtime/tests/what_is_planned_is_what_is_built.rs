@@ -421,7 +421,7 @@ fn every_verdict_says_why_what_it_costs_and_what_turns_it_over() {
             assert!(plan.is_on("lamp") && plan.needs.len() > 2, "{}", technique.name());
             for need in &plan.needs {
                 let is_said = |text: &str| text.len() > 2;
-                let is_whole = is_said(&need.why) && is_said(&need.cost) && is_said(&need.turned_over_by);
+                let is_whole = is_said(&need.why) && is_said(&need.cost) && is_said(&need.toggled_by);
                 assert!(is_whole, "{}: {need:?}", technique.name());
             }
             let text = plan.in_words();

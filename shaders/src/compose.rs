@@ -67,7 +67,7 @@ pub enum AmbientModel {
     #[default]
     Hemisphere,
     /// That, times ambient occlusion.
-    Openness,
+    Occlusion,
     /// The same about the bent normal.
     Bent,
     /// The sky of the moment in spherical harmonics, against each texel's visibility of it.
@@ -85,7 +85,7 @@ impl PageVariant {
 pub fn depth_shader(surface: SurfaceVariant) -> String {
     let mut text = [wgsl!("frame"), wgsl!("place")].concat();
     if surface.is_cut {
-        push_holes(&mut text, surface, &surface_vertex_wgsl(surface, None));
+        push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
         text.push_str(wgsl!("depth_fragment"));
     } else {
         text.push_str(DEPTH_VERTEX_WGSL);
@@ -140,7 +140,7 @@ fn constants() -> String {
 /// What every program that lights a surface begins with.
 pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
     let mut text = [wgsl!("frame"), wgsl!("place")].concat();
-    push_holes(&mut text, surface, &surface_vertex_wgsl(surface, None));
+    push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
     text.push_str(wgsl!("facing"));
     if page.layer_count() + page.lamp_layer_count > 0 {
         // Writing to a string cannot fail.
@@ -152,12 +152,12 @@ pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String 
 /// Light from all around.
 fn push_ambient(text: &mut String, page: &PageVariant) {
     text.push_str(if page.has_backs { wgsl!("side_two") } else { wgsl!("side_one") });
-    if matches!(page.ambient, AmbientModel::Openness | AmbientModel::Bent) {
-        text.push_str(wgsl!("openness"));
+    if matches!(page.ambient, AmbientModel::Occlusion | AmbientModel::Bent) {
+        text.push_str(wgsl!("ambient_visibility"));
     }
     text.push_str(match page.ambient {
         AmbientModel::Hemisphere => wgsl!("ambient_hemisphere"),
-        AmbientModel::Openness => wgsl!("ambient_openness"),
+        AmbientModel::Occlusion => wgsl!("ambient_occlusion"),
         AmbientModel::Bent => wgsl!("ambient_bent"),
         AmbientModel::Sky => wgsl!("ambient_sky"),
     });
@@ -196,7 +196,7 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
 }
 
 /// A vertex stage with its varyings, and what is known of the surface's colour and holes.
-pub(crate) fn push_holes(text: &mut String, surface: SurfaceVariant, vertex: &str) {
+pub(crate) fn push_alpha_mask(text: &mut String, surface: SurfaceVariant, vertex: &str) {
     text.push_str(&constants());
     text.push_str(vertex);
     text.push_str(if surface.is_textured { wgsl!("texture_color") } else { wgsl!("texture_none") });

@@ -90,7 +90,7 @@ pub enum ShadowSource {
 pub fn shadow_depth_shader(surface: SurfaceVariant) -> String {
     let mut text = [wgsl!("frame"), wgsl!("shadow_view"), wgsl!("place_in_map")].concat();
     if surface.is_cut {
-        crate::compose::push_holes(&mut text, surface, &surface_vertex_wgsl(surface, None));
+        crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
         text.push_str(wgsl!("depth_fragment"));
     } else {
         text.push_str(DEPTH_VERTEX_WGSL);
@@ -105,7 +105,7 @@ pub fn shadow_mask_shader(surface: SurfaceVariant, is_flat: bool) -> String {
     let mut text = [wgsl!("frame"), wgsl!("shadow_view"), place, wgsl!("ground_height")].concat();
     if surface.is_cut {
         let height = ("height_m", "height_above_ground(vertex.position_m)");
-        crate::compose::push_holes(&mut text, surface, &surface_vertex_wgsl(surface, Some(height)));
+        crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, Some(height)));
     } else {
         text.push_str(&[wgsl!("mask_vertex"), wgsl!("alpha_none")].concat());
     }

@@ -3,7 +3,7 @@
 use crate::compose::{on_surface, wgsl};
 use crate::{PageVariant, SurfaceVariant};
 
-/// A light that throws volumes.
+/// A light that extrudes volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VolumeLight {
     /// Walls meet in a point at infinity.

@@ -35,7 +35,7 @@ fn pages() -> Vec<PageVariant> {
         has_backs: lamp_layer_count > 0,
     };
     let of_lanes = |l| {
-        let ambient = [AmbientModel::Openness, AmbientModel::Bent, AmbientModel::Sky];
+        let ambient = [AmbientModel::Occlusion, AmbientModel::Bent, AmbientModel::Sky];
         let plain = with(l, 255, AmbientModel::Hemisphere, 0);
         std::iter::once(plain)
             .chain(ambient.into_iter().flat_map(move |a| [with(l, 65_535, a, 0), with(l, 65_535, a, 3)]))
@@ -141,7 +141,7 @@ fn what_a_page_has_not_is_not_in_its_program() {
     let all = PageVariant {
         max_code: 255,
         lanes: vec![LaneVariant { layer_count: 1, weight: 1.0, chord: 1.0 }],
-        ambient: AmbientModel::Openness,
+        ambient: AmbientModel::Occlusion,
         ..PageVariant::default()
     };
     assert_eq!(names(&all, plain), ["frame", "materials", "rise_map", "fall_map", "ao_map"]);

@@ -2,7 +2,7 @@
 
 use crate::Traced;
 use glam::DVec3;
-use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimate, find_ambient};
+use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimate, solve_ambient};
 use sunbake::atlas::SurfacePoint;
 
 /// So many rays, of everything, however far.
@@ -13,7 +13,7 @@ pub fn rays(rays: u32) -> AmbientSettings {
 /// Ambient light at each of these points, on their fronts, and the rays that it took.
 pub fn ambient_at(traced: &Traced, points: &[AmbientPoint], settings: AmbientSettings) -> (Vec<Estimate>, u64) {
     let engine = AmbientEngine::new(&traced.scene, &traced.geometry, &traced.tracer, settings);
-    let runs = find_ambient(&engine, points.len(), |i, texel| texel.push(points[i]), |_| true).expect("not stopped");
+    let runs = solve_ambient(&engine, points.len(), |i, texel| texel.push(points[i]), |_| true).expect("not stopped");
     let rays = runs.iter().map(|run| run.rays).sum();
     (runs.into_iter().flat_map(|run| run.front).collect(), rays)
 }

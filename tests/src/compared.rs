@@ -9,7 +9,7 @@ use sunbake::scene::Scene;
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::DayRequest;
 use sunbake::testing::{SceneBuilder, floor};
-use sunbake_runtime::compare::{Contender, Contest, Outcome, Playback, SetOnDisk};
+use sunbake_runtime::compare::{Comparison, Outcome, Playback, SetOnDisk, TechniqueSpec};
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::{Camera, Filter, Stage, View};
 
@@ -39,10 +39,11 @@ pub fn bake_into(folder: &Path, name: &str, scene: &Scene, edit: impl Fn(BakeSet
 }
 
 /// Times with filtering, as a set of one lane has them.
-pub const PLAYED: Contender = Contender::Baked(Playback { bits: Bits::Sixteen, lanes: 1, filter: Filter::Bilinear });
+pub const PLAYED: TechniqueSpec =
+    TechniqueSpec::Baked(Playback { bits: Bits::Sixteen, lanes: 1, filter: Filter::Bilinear });
 
 /// What the CPU finds of a set, three times of the day through two cameras.
-pub fn compared(set: &Path, contenders: &[Contender], against: Contender) -> Outcome {
+pub fn compared(set: &Path, techniques: &[TechniqueSpec], against: TechniqueSpec) -> Outcome {
     let stage = Stage::read(set).expect("a set").without_times();
     let look = |eye_m: DVec3| {
         let camera = Camera::look_at(eye_m - stage.scene.centre_m, -stage.scene.centre_m, 0.8).expect("two points");
@@ -50,21 +51,21 @@ pub fn compared(set: &Path, contenders: &[Contender], against: Contender) -> Out
     };
     let views = [look(DVec3::new(4.0, 3.0, 5.0)), look(DVec3::new(-1.0, 1.5, 3.0))];
     let sets = [SetOnDisk::read(set).expect("a set")];
-    let contest = Contest {
+    let comparison = Comparison {
         sets: &sets,
         gpu: None,
-        contenders,
+        techniques,
         against,
         views: &views,
         times: &[0.3, 0.5, 0.7],
         map_size_texels: None,
         rounds: 1,
     };
-    contest.run(stage, &|| true).unwrap_or_else(|error| panic!("{error}"))
+    comparison.run(stage, &|| true).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Rays over the sun's disc, few enough for a test.
-pub const TRUE: Contender = Contender::Truth(Truth::Soft { rays: 16 });
+pub const TRUE: TechniqueSpec = TechniqueSpec::Truth(Truth::Soft { rays: 16 });
 
 /// The mean error of a set against truth.
 pub fn mean_error(set: &Path) -> f64 {

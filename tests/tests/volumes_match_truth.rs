@@ -9,7 +9,7 @@ use sunbake::scene::{LoadLimits, load};
 use sunbake::sun::{DayOutcome, SunPath, day};
 use sunbake_runtime::compare::MaskAgreement;
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
-use sunbake_runtime::technique::{Light, Technique, Volumes};
+use sunbake_runtime::technique::{LightKind, Technique, Volumes};
 use sunbake_runtime::testing::masks::{agreement, all_ways, camera_in_shadow, cameras_around, mask, with_solid_leaves};
 use sunbake_runtime::volumes::{Mode, Savings};
 use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
@@ -55,7 +55,7 @@ fn assert_right(name: &str, scene: &Path, edge_px: u32) {
         let moment = Moment::new(stage.path.as_ref(), t);
         for (index, camera) in cameras(&stage, &moment).iter().enumerate() {
             let shot = Shot::new(&stage, View::new(camera, [edge_px; 2], &stage.scene));
-            let found = agreement(&mut volumes, &shot, &moment, Light::Sun);
+            let found = agreement(&mut volumes, &shot, &moment, LightKind::Sun);
             let at: Vec<_> = found.unexplained.iter().map(|i| (i % edge_px as usize, i / edge_px as usize)).collect();
             assert!(at.is_empty(), "{name} at {t:.3}, camera {index}: wrong at {at:?}");
             all.add(&found);
@@ -81,9 +81,9 @@ fn assert_all_ways_agree(name: &str, scene: &Path, edge_px: u32) {
         let moment = Moment::new(stage.path.as_ref(), t);
         for (index, camera) in cameras(&stage, &moment).iter().enumerate().skip(3) {
             let shot = Shot::new(&stage, View::new(camera, [edge_px; 2], &stage.scene));
-            let expected = mask(&mut ways[0], &shot, &moment, Light::Sun);
+            let expected = mask(&mut ways[0], &shot, &moment, LightKind::Sun);
             for other in &mut ways[1..] {
-                let found = mask(other, &shot, &moment, Light::Sun);
+                let found = mask(other, &shot, &moment, LightKind::Sun);
                 let differ = found.pixels.iter().zip(&expected.pixels).filter(|(a, b)| a != b).count();
                 assert_eq!(differ, 0, "{name} at {t:.3}, camera {index}, {}", other.name());
                 compared += found.pixels.len();

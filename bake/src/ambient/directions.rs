@@ -24,26 +24,26 @@ const MOST_DRAWS: u32 = 1 << 20;
 /// Fewest sequences: more than texels ask together.
 const LEAST_SEQUENCES: u32 = 32;
 
-/// Draws of several sequences, ready to be used.
-pub(super) struct Draws {
-    sequences: Vec<Vec<Draw>>,
+/// DirectionSets of several sequences, ready to be used.
+pub(super) struct DirectionSets {
+    sequences: Vec<Vec<DirectionSample>>,
 }
 
 /// A direction about a normal, and a number in [0, 1) to pick one of a texel's points with.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Draw {
+pub(super) struct DirectionSample {
     /// Across, across and along the normal.
     pub local: Vec3,
     pub pick: f32,
 }
 
-impl Draws {
+impl DirectionSets {
     /// `rays` of each sequence, in blocks of the given lengths, which add up to it. Each is a power of two up to [`BLOCK`]
     /// and starts at a multiple of itself; its draws are in the order of [`cell`].
     pub fn new(seed: u32, rays: u32, blocks: &[u32]) -> Self {
         let count = (MOST_DRAWS / rays).clamp(LEAST_SEQUENCES, MOST_SEQUENCES);
         let sequence = |index: u32| {
-            let mut draws = vec![Draw::default(); rays as usize];
+            let mut draws = vec![DirectionSample::default(); rays as usize];
             let mut first = 0;
             for &length in blocks {
                 draw_block(
@@ -61,18 +61,18 @@ impl Draws {
 
     /// The sequence of a texel: another one for each seed up to their number.
     #[inline]
-    pub fn of(&self, seed: u32) -> &[Draw] {
+    pub fn of(&self, seed: u32) -> &[DirectionSample] {
         &self.sequences[seed as usize % self.sequences.len()]
     }
 }
 
 /// Rays `first..first + count` of a sequence, one a cell of the square, in the order of [`cell`].
-pub(super) fn draw_block(seed: u32, first: u32, count: u32, draws: &mut [Draw]) {
+pub(super) fn draw_block(seed: u32, first: u32, count: u32, draws: &mut [DirectionSample]) {
     for index in first..first + count {
         let [x, y, pick, _] = sobol_burley::sample_4d(index, 0, seed);
         let disc = on_disc(Vec2::new(x, y));
         let up = (1.0 - disc.length_squared()).max(0.0).sqrt();
-        draws[cell([x, y], count) as usize] = Draw { local: disc.extend(up), pick };
+        draws[cell([x, y], count) as usize] = DirectionSample { local: disc.extend(up), pick };
     }
 }
 
@@ -99,7 +99,7 @@ impl Frame {
 
     /// A direction about the normal.
     #[inline]
-    pub fn direction(&self, draw: &Draw) -> DVec3 {
+    pub fn direction(&self, draw: &DirectionSample) -> DVec3 {
         let local = draw.local.as_dvec3();
         self.across[0] * local.x + self.across[1] * local.y + self.normal * local.z
     }
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn every_aligned_block_has_one_point_in_every_cell() {
         for (seed, first, count) in [(0, 0, 1), (1, 0, 2), (7, 64, 64), (9, 128, 128), (123_456, 768, 256)] {
-            let mut draws = vec![Draw { local: Vec3::NAN, pick: 0.0 }; count as usize];
+            let mut draws = vec![DirectionSample { local: Vec3::NAN, pick: 0.0 }; count as usize];
             draw_block(seed, first, count, &mut draws);
             assert!(draws.iter().all(|draw| draw.local.is_finite()), "seed {seed}, {count} points from {first}");
         }
@@ -151,7 +151,7 @@ mod tests {
     fn directions_are_unit_and_as_dense_as_the_cosine() {
         let normal = DVec3::new(0.3, -0.5, 0.2).normalize();
         let frame = Frame::new(normal);
-        let mut draws = vec![Draw::default(); 256];
+        let mut draws = vec![DirectionSample::default(); 256];
         draw_block(5, 0, 256, &mut draws);
         let directions: Vec<DVec3> = draws.iter().map(|draw| frame.direction(draw)).collect();
         assert!(directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-6 && d.dot(normal) >= 0.0));

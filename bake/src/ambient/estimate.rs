@@ -9,12 +9,12 @@
 
 use super::AmbientSettings;
 use super::buried::Burial;
-use super::directions::{BLOCK, Draw, Draws, Frame};
+use super::directions::{BLOCK, DirectionSample, DirectionSets, Frame};
 use super::harmonics::{self, Coefficients};
 use super::hidden_share;
 use crate::atlas::SurfacePoint;
 use crate::scene::{Geometry, Scene};
-use crate::trace::{Occluder, PACKET, Scatter, ScatterRoom, ShadowQuery, Tracer};
+use crate::trace::{Occluder, PACKET, PacketScratch, PacketTracer, ShadowQuery, Tracer};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -71,12 +71,12 @@ pub struct Estimates {
 /// Estimates ambient light.
 pub struct AmbientEngine<'a> {
     tracer: &'a Tracer,
-    scatter: Scatter<'a>,
+    packet_tracer: PacketTracer<'a>,
     burial: Burial<'a>,
     settings: AmbientSettings,
     /// Rays are traced in blocks of these lengths.
     blocks: Vec<u32>,
-    draws: Draws,
+    draws: DirectionSets,
 }
 
 impl<'a> AmbientEngine<'a> {
@@ -84,15 +84,15 @@ impl<'a> AmbientEngine<'a> {
     pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, settings: AmbientSettings) -> Self {
         let burial = Burial::new(scene, geometry, tracer, settings.distance_m.is_none());
         let blocks = blocks(&settings);
-        let draws = Draws::new(settings.seed, settings.rays, &blocks);
-        Self { tracer, scatter: Scatter::new(tracer), burial, settings, blocks, draws }
+        let draws = DirectionSets::new(settings.seed, settings.rays, &blocks);
+        Self { tracer, packet_tracer: PacketTracer::new(tracer), burial, settings, blocks, draws }
     }
 
     /// Of points that stand for one place together, adds those outside all solids, or all of them where there is none: what
     /// lies inside would darken the others.
     pub fn add_visible(&self, points: impl Iterator<Item = AmbientPoint> + Clone, to: &mut Vec<AmbientPoint>) {
-        let (mut room, before) = (ScatterRoom::default(), to.len());
-        let is_seen = |point: &AmbientPoint| !self.burial.is_buried(&self.scatter, &mut room, point, &mut 0);
+        let (mut scratch, before) = (PacketScratch::default(), to.len());
+        let is_seen = |point: &AmbientPoint| !self.burial.is_buried(&self.packet_tracer, &mut scratch, point, &mut 0);
         to.extend(points.clone().filter(is_seen));
         if to.len() == before {
             to.extend(points);
@@ -109,7 +109,7 @@ impl<'a> AmbientEngine<'a> {
 /// the points of one, one at least, on which its rays are spread. Which directions they take follows from its place in the
 /// order. Answers come in that order, run by run. `on_progress` gets the number of texels that were done and returns false to
 /// stop; then there is no answer.
-pub fn find_ambient(
+pub fn solve_ambient(
     engine: &AmbientEngine,
     count: usize,
     texel: impl Fn(usize, &mut Vec<AmbientPoint>) + Sync,
@@ -117,11 +117,11 @@ pub fn find_ambient(
 ) -> Option<Vec<Estimates>> {
     let run = |run: usize| {
         let range = run * RUN..count.min((run + 1) * RUN);
-        let mut room = Room::new(engine.settings.rays);
+        let mut scratch = Scratch::new(engine.settings.rays);
         let mut answers = Estimates::default();
         for start in range.clone().step_by(TOGETHER) {
-            room.gather(start..range.end.min(start + TOGETHER), &texel);
-            engine.ask(&mut room, &mut answers);
+            scratch.gather(start..range.end.min(start + TOGETHER), &texel);
+            engine.ask(&mut scratch, &mut answers);
         }
         on_progress(range.len()).then_some(answers)
     };
@@ -150,8 +150,8 @@ fn seed_of(index: usize) -> u32 {
 }
 
 /// What is used anew by every block of texels.
-struct Room {
-    walk: ScatterRoom,
+struct Scratch {
+    walk: PacketScratch,
     texels: Vec<Texel>,
     points: Vec<AmbientPoint>,
     queries: Vec<ShadowQuery>,
@@ -164,7 +164,7 @@ struct Texel {
     seed: u32,
     points: Range<usize>,
     /// Where the rays of its points start, on the side at hand.
-    seats: Vec<Seat>,
+    ray_origins: Vec<RayOrigin>,
     tally: Tally,
     /// Sum of the first half of the rays, and how many those are.
     half: (f64, u32),
@@ -175,7 +175,7 @@ struct Texel {
 }
 
 /// A point of a texel on one of its sides.
-struct Seat {
+struct RayOrigin {
     origin_m: DVec3,
     plane: DVec3,
     frame: Frame,
@@ -192,11 +192,11 @@ struct Tally {
     sky: [f64; harmonics::COUNT],
 }
 
-impl Room {
+impl Scratch {
     fn new(rays: u32) -> Self {
         let cells = rays.min(BLOCK) as usize;
         Self {
-            walk: ScatterRoom::default(),
+            walk: PacketScratch::default(),
             texels: Vec::new(),
             points: Vec::new(),
             queries: Vec::new(),
@@ -215,7 +215,7 @@ impl Room {
             let texel = Texel {
                 seed,
                 points: first..self.points.len(),
-                seats: Vec::new(),
+                ray_origins: Vec::new(),
                 tally: Tally::default(),
                 half: (0.0, 0),
                 apart: None,
@@ -232,82 +232,88 @@ impl Room {
 
 impl AmbientEngine<'_> {
     /// Answers for the texels that were gathered.
-    fn ask(&self, room: &mut Room, answers: &mut Estimates) {
+    fn ask(&self, scratch: &mut Scratch, answers: &mut Estimates) {
         let first = answers.front.len();
-        self.ask_side(room, 0, answers);
-        for index in 0..room.texels.len() {
-            let estimate = self.estimate(&room.texels[index].tally);
+        self.ask_side(scratch, 0, answers);
+        for index in 0..scratch.texels.len() {
+            let estimate = self.estimate(&scratch.texels[index].tally);
             answers.front.push(estimate);
-            answers.buried.push(self.is_buried(room, index, &estimate, &mut answers.rays));
+            answers.buried.push(self.is_buried(scratch, index, &estimate, &mut answers.rays));
         }
-        if (0..room.texels.len()).any(|index| room.is_double_sided(index)) {
-            self.ask_side(room, 1, answers);
-            for index in (0..room.texels.len()).filter(|&index| room.is_double_sided(index)) {
-                answers.back.push(((first + index) as u32, self.estimate(&room.texels[index].tally)));
+        if (0..scratch.texels.len()).any(|index| scratch.is_double_sided(index)) {
+            self.ask_side(scratch, 1, answers);
+            for index in (0..scratch.texels.len()).filter(|&index| scratch.is_double_sided(index)) {
+                answers.back.push(((first + index) as u32, self.estimate(&scratch.texels[index].tally)));
             }
         }
     }
 
-    fn is_buried(&self, room: &mut Room, texel: usize, estimate: &Estimate, rays: &mut u64) -> bool {
+    fn is_buried(&self, scratch: &mut Scratch, texel: usize, estimate: &Estimate, rays: &mut u64) -> bool {
         // Without a distance, what is buried sees nothing.
         if self.settings.distance_m.is_none() && f64::from(estimate.open) > DARK {
             return false;
         }
-        let points = room.texels[texel].points.clone();
-        room.points[points].iter().all(|point| self.burial.is_buried(&self.scatter, &mut room.walk, point, rays))
+        let points = scratch.texels[texel].points.clone();
+        scratch.points[points]
+            .iter()
+            .all(|point| self.burial.is_buried(&self.packet_tracer, &mut scratch.walk, point, rays))
     }
 
-    fn ask_side(&self, room: &mut Room, side: usize, Estimates { rays, unsettled, .. }: &mut Estimates) {
+    fn ask_side(&self, scratch: &mut Scratch, side: usize, Estimates { rays, unsettled, .. }: &mut Estimates) {
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        for texel in &mut room.texels {
-            let seat = |point: &AmbientPoint| {
+        for texel in &mut scratch.texels {
+            let ray_origin = |point: &AmbientPoint| {
                 let plane = point.surface.normal * sign;
                 let origin_m = self.tracer.lift(point.surface.position_m, plane, point.surface.triangle);
-                Seat {
+                RayOrigin {
                     origin_m,
                     plane,
                     frame: Frame::new(point.shading_normal * sign),
                     triangle: point.surface.triangle,
                 }
             };
-            let points = &room.points[texel.points.clone()];
+            let points = &scratch.points[texel.points.clone()];
             let is_asked = side == 0 || points[0].surface.is_double_sided;
-            texel.seats.clear();
-            texel.seats.extend(points.iter().filter(|_| is_asked).map(seat));
+            texel.ray_origins.clear();
+            texel.ray_origins.extend(points.iter().filter(|_| is_asked).map(ray_origin));
             (texel.tally, texel.half) = (Tally::default(), (0.0, 0));
             (texel.apart, texel.is_done) = (None, !is_asked);
         }
         let mut traced = 0;
         for &count in &self.blocks {
-            self.trace(room, side, traced, count as usize);
+            self.trace(scratch, side, traced, count as usize);
             traced += count;
             if let Some(error) = self.settings.error.filter(|_| traced.is_power_of_two()) {
-                judge(&mut room.texels, traced, error);
+                judge(&mut scratch.texels, traced, error);
             }
-            if room.texels.iter().all(|texel| texel.is_done) {
+            if scratch.texels.iter().all(|texel| texel.is_done) {
                 break;
             }
         }
         if self.settings.error.is_some() {
-            *unsettled += room.texels.iter().filter(|texel| !texel.is_done).count() as u64;
+            *unsettled += scratch.texels.iter().filter(|texel| !texel.is_done).count() as u64;
         }
-        *rays += room.texels.iter().map(|texel| u64::from(texel.tally.count)).sum::<u64>();
+        *rays += scratch.texels.iter().map(|texel| u64::from(texel.tally.count)).sum::<u64>();
     }
 
     /// Traces a block of every texel's rays, cell by cell of the hemisphere.
-    fn trace(&self, room: &mut Room, side: usize, first: u32, cells: usize) {
-        let Room { walk, texels, guesses, queries, .. } = room;
+    fn trace(&self, scratch: &mut Scratch, side: usize, first: u32, cells: usize) {
+        let Scratch { walk, texels, guesses, queries, .. } = scratch;
         let guesses = &mut guesses[side];
         for cell in 0..cells {
             queries.clear();
             let mut asking = [0; TOGETHER];
             for (index, texel) in texels.iter().enumerate().filter(|(_, texel)| !texel.is_done) {
-                let draw: &Draw = &self.draws.of(texel.seed)[first as usize + cell];
-                let seat = &texel.seats[(draw.pick * texel.seats.len() as f32) as usize];
-                let direction = seat.frame.direction(draw);
-                if direction.dot(seat.plane) > 0.0 {
+                let draw: &DirectionSample = &self.draws.of(texel.seed)[first as usize + cell];
+                let ray_origin = &texel.ray_origins[(draw.pick * texel.ray_origins.len() as f32) as usize];
+                let direction = ray_origin.frame.direction(draw);
+                if direction.dot(ray_origin.plane) > 0.0 {
                     asking[queries.len()] = index;
-                    queries.push(ShadowQuery { origin_m: seat.origin_m, direction, triangle: seat.triangle });
+                    queries.push(ShadowQuery {
+                        origin_m: ray_origin.origin_m,
+                        direction,
+                        triangle: ray_origin.triangle,
+                    });
                 }
             }
             let place = cell * guesses.len() / cells;
@@ -320,15 +326,15 @@ impl AmbientEngine<'_> {
 
     /// The shares of rays that are hidden.
     #[inline]
-    fn hidden(&self, walk: &mut ScatterRoom, rays: &[ShadowQuery], guess: &mut Option<Occluder>) -> [f64; PACKET] {
+    fn hidden(&self, walk: &mut PacketScratch, rays: &[ShadowQuery], guess: &mut Option<Occluder>) -> [f64; PACKET] {
         let mut hidden = [0.0; PACKET];
         match self.settings.distance_m {
             None => {
-                let stopped = self.scatter.occluded(walk, rays, guess);
+                let stopped = self.packet_tracer.occluded(walk, rays, guess);
                 (0..rays.len()).for_each(|ray| hidden[ray] = f64::from(stopped >> ray & 1));
             }
             Some(reach_m) => {
-                let hits = self.scatter.nearest(walk, rays, reach_m);
+                let hits = self.packet_tracer.nearest(walk, rays, reach_m);
                 hidden = hits.map(|hit| hit.map_or(0.0, |hit| hidden_share(hit.distance_m, reach_m)));
             }
         }

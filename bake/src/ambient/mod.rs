@@ -7,13 +7,13 @@
 //! transfer vector of diffuse light (Sloan, Kautz and Snyder, "Precomputed radiance transfer", *SIGGRAPH* 2002): a sky with
 //! coefficients L lights the point as `sum of L_i T_i`, exactly where the sky holds nothing above degree two.
 //!
-//! Indoors a closed room would be black. With a *distance* M only what is nearer counts, and counts less the farther it is:
+//! Indoors a closed scratch would be black. With a *distance* M only what is nearer counts, and counts less the farther it is:
 //! a surface at d hides `(1 - (d / M)^2)^2`. That is all of it at contact, nothing at M, and smooth at both ends.
 //!
 //! Practice.
 //!
 //! * Directions are Owen-scrambled Sobol points (`directions.rs`), traced on a sixteen-wide hierarchy
-//!   ([`crate::trace::Scatter`]). Cell by cell of the hemisphere, sixteen neighbouring texels ask the same way one after the
+//!   ([`crate::trace::PacketTracer`]). Cell by cell of the hemisphere, sixteen neighbouring texels ask the same way one after the
 //!   other, and what hid the last is asked first.
 //! * The hemisphere is that of the *shading* normal, so that a surface that is meant to be round has no facets in its
 //!   light. Of it, directions behind the triangle's own plane are left out of the count: a convex thing alone reads 1.
@@ -27,17 +27,17 @@
 mod buried;
 mod directions;
 mod estimate;
+mod fill_buried;
 pub mod harmonics;
 mod page;
 mod seams;
-mod settle;
 mod vertices;
 
-pub use estimate::{AmbientEngine, AmbientPoint, Estimate, Estimates, find_ambient};
+pub use estimate::{AmbientEngine, AmbientPoint, Estimate, Estimates, solve_ambient};
 pub use harmonics::Coefficients;
 pub use page::{AmbientPage, Plane, Side};
 pub use seams::{Mismatch, Seams};
-pub use vertices::openness_of_vertices;
+pub use vertices::ambient_visibility_of_vertices;
 
 /// What is asked of ambient light, and what it may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! A page of ambient light: one plane of numbers for each quantity, from estimates to codes.
 
 use super::estimate::{Estimate, Estimates};
-use super::settle::Settling;
+use super::fill_buried::BuriedTexels;
 use super::{AmbientSettings, harmonics};
 use crate::atlas::{GutterTexel, PageSamples, PageSize};
 use crate::maps::{AmbientMaps, AmbientSide, encode_open, encode_signed};
@@ -81,11 +81,11 @@ impl AmbientPage {
         let texel_count = size.texel_count();
         let mut front = Side::new(texel_count, settings);
         let texel_at = |place: usize| samples.samples[order[place] as usize].texel as usize;
-        let mut settling = Settling::new(size);
+        let mut buried_texels = BuriedTexels::new(size);
         let mut start = 0;
         for run in runs {
             for (k, (estimate, &is_buried)) in run.front.iter().zip(&run.buried).enumerate() {
-                settling.add(texel_at(start + k), is_buried);
+                buried_texels.add(texel_at(start + k), is_buried);
                 if !is_buried {
                     front.set(texel_at(start + k), estimate);
                 }
@@ -103,7 +103,7 @@ impl AmbientPage {
             }
         }
         for side in std::iter::once(&mut front).chain(&mut back) {
-            for (texel, source) in settling.shown_as(&side.open) {
+            for (texel, source) in buried_texels.shown_as(&side.open) {
                 side.copy(texel, source);
             }
         }

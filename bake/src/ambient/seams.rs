@@ -212,7 +212,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// A place in space, for telling whether two are the same.
-type Place = [u32; 3];
+type PositionBits = [u32; 3];
 
 /// Edges of all triangles on a page, by where they are in space.
 fn edges_by_place(
@@ -221,10 +221,10 @@ fn edges_by_place(
     normals: &ShadingNormals,
     atlas: &Atlas,
     page: u32,
-) -> HashMap<[Place; 2], Vec<Edge>> {
+) -> HashMap<[PositionBits; 2], Vec<Edge>> {
     let size = atlas.pages[page as usize];
     let place = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut edges: HashMap<[Place; 2], Vec<Edge>> = HashMap::new();
+    let mut edges: HashMap<[PositionBits; 2], Vec<Edge>> = HashMap::new();
     for (instance, _) in atlas.placements.iter().enumerate().filter(|(_, p)| p.page == page && !p.is_empty()) {
         let layout = &atlas.layouts[scene.instances[instance].mesh];
         let first = geometry.first_triangle[instance] as usize;

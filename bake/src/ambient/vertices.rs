@@ -7,7 +7,7 @@
 //! corners, vertices cannot hold (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4),
 //! 2011, discuss what they can).
 
-use super::estimate::{AmbientEngine, AmbientPoint, Estimates, find_ambient};
+use super::estimate::{AmbientEngine, AmbientPoint, Estimates, solve_ambient};
 use crate::atlas::SurfacePoint;
 use crate::scene::{Geometry, Scene, ShadingNormals};
 use std::collections::HashMap;
@@ -18,7 +18,7 @@ const PULL: f64 = 0.125;
 /// For each instance, how open each vertex of its mesh is, 0 to 1; of double-sided surfaces, the side that sees more. Instances
 /// that are air read 1. `on_progress` gets the number of places that were done and returns false to stop; then there is no
 /// answer. With it come the rays traced.
-pub fn openness_of_vertices(
+pub fn ambient_visibility_of_vertices(
     engine: &AmbientEngine,
     scene: &Scene,
     geometry: &Geometry,
@@ -32,7 +32,7 @@ pub fn openness_of_vertices(
     }
     let texel =
         |place: usize, points: &mut Vec<AmbientPoint>| engine.add_visible(corners[place].iter().copied(), points);
-    let runs = find_ambient(engine, corners.len(), texel, on_progress)?;
+    let runs = solve_ambient(engine, corners.len(), texel, on_progress)?;
     let open = more_open_sides(&runs);
     let of_instance = |places: Vec<u32>| places.iter().map(|&place| value(&open, place)).collect();
     Some((places.into_iter().map(of_instance).collect(), runs.iter().map(|run| run.rays).sum()))
@@ -118,7 +118,7 @@ mod tests {
         let geometry = Geometry::new(scene);
         let tracer = Tracer::new(scene, &geometry);
         let engine = AmbientEngine::new(scene, &geometry, &tracer, AmbientRequest::with_rays(1024).estimate);
-        openness_of_vertices(&engine, scene, &geometry, &ShadingNormals::new(scene), |_| true).unwrap().0
+        ambient_visibility_of_vertices(&engine, scene, &geometry, &ShadingNormals::new(scene), |_| true).unwrap().0
     }
 
     #[test]

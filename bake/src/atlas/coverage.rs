@@ -14,17 +14,17 @@ use std::ops::Range;
 pub(super) const HAIR_TEXELS: f64 = 1.0 / 512.0;
 
 /// A triangle in texels of its page.
-pub(super) type Corners = [DVec2; 3];
+pub(super) type TexelTriangle = [DVec2; 3];
 
 /// Texel rows that the triangle touches. Never empty on a page of at least one row.
-pub(super) fn rows(corners: &Corners, height: u32) -> Range<u32> {
+pub(super) fn rows(corners: &TexelTriangle, height: u32) -> Range<u32> {
     let low = corners.iter().fold(f64::INFINITY, |low, c| low.min(c.y));
     let high = corners.iter().fold(f64::NEG_INFINITY, |high, c| high.max(c.y));
     cells(low, high, height)
 }
 
 /// Texel columns that the triangle touches within a row that [`rows`] named.
-pub(super) fn columns(corners: &Corners, row: u32, width: u32) -> Range<u32> {
+pub(super) fn columns(corners: &TexelTriangle, row: u32, width: u32) -> Range<u32> {
     let (bottom, top) = (f64::from(row) - HAIR_TEXELS, f64::from(row) + 1.0 + HAIR_TEXELS);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut add = |x: f64| (low, high) = (low.min(x), high.max(x));
@@ -56,7 +56,7 @@ fn cells(low: f64, high: f64, count: u32) -> Range<u32> {
 mod tests {
     use super::*;
 
-    fn touched(corners: Corners) -> Vec<(u32, u32)> {
+    fn touched(corners: TexelTriangle) -> Vec<(u32, u32)> {
         rows(&corners, 16).flat_map(|y| columns(&corners, y, 16).map(move |x| (x, y))).collect()
     }
 

@@ -3,7 +3,7 @@
 //! Practice: a chart is drawn conservatively into its box, every row and column keeps the first and last texel touched, and
 //! both are widened by the padding. A row or column that nothing touches counts as full.
 
-use super::coverage::{self, Corners};
+use super::coverage::{self, TexelTriangle};
 
 /// Extents of a padded chart, in texels of its padded box: half-open.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,7 +19,7 @@ const UNTOUCHED: (u16, u16) = (u16::MAX, 0);
 
 impl Outline {
     /// Draws triangles, in texels of a box of `width` by `height`.
-    pub fn new(triangles: impl Iterator<Item = Corners>, (width, height): (u32, u32), padding: u32) -> Self {
+    pub fn new(triangles: impl Iterator<Item = TexelTriangle>, (width, height): (u32, u32), padding: u32) -> Self {
         let mut columns = vec![UNTOUCHED; width as usize];
         let mut rows = vec![UNTOUCHED; height as usize];
         for corners in triangles {

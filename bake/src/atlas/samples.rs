@@ -14,7 +14,7 @@
 //! * A triangle whose texture coordinates have no area takes only texels that no other triangle touches, and is sampled
 //!   at its middle.
 
-use super::coverage::{self, Corners, HAIR_TEXELS};
+use super::coverage::{self, HAIR_TEXELS, TexelTriangle};
 use super::overlap::clip;
 use super::{Atlas, PageSamples, PageSize, Sample, SurfacePoint};
 use crate::scene::{Geometry, Scene};
@@ -38,7 +38,7 @@ const NO_AREA_TEXELS: f64 = 1e-12;
 
 /// A triangle on the page.
 struct Patch {
-    corners: Corners,
+    corners: TexelTriangle,
     /// Twice the signed area, in texels.
     area2: f64,
     triangle: u32,

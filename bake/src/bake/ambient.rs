@@ -2,12 +2,14 @@
 
 use super::pages::PageBaker;
 use super::{BakeError, check_cancelled, timed};
-use crate::ambient::{AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, find_ambient, openness_of_vertices};
+use crate::ambient::{
+    AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, ambient_visibility_of_vertices, solve_ambient,
+};
 use crate::atlas::{self, PageSamples, PageSize, Sample};
 use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
 use crate::disk::write::{SetWriter, VERTICES_FILE};
 use crate::glb;
-use crate::progress::Stage;
+use crate::progress::BakeStage;
 use crate::scene::ShadingNormals;
 use crate::settings::AmbientRequest;
 
@@ -40,7 +42,7 @@ impl PageBaker<'_> {
         order: &[u32],
     ) -> Result<Option<AmbientPage>, BakeError> {
         let Some(sky) = self.lights.sky else { return Ok(None) };
-        self.progress.start(Stage::Ambient, samples.samples.len() as u64);
+        self.progress.start(BakeStage::Ambient, samples.samples.len() as u64);
         let mut seconds = 0.0;
         let baked = timed(&mut seconds, || self.bake_sky(&sky, page, samples, order));
         self.stats.seconds.ambient += seconds;
@@ -53,8 +55,9 @@ impl PageBaker<'_> {
             return Ok(None);
         };
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
-        progress.start(Stage::Ambient, 0);
-        let find = || openness_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
+        progress.start(BakeStage::Ambient, 0);
+        let find =
+            || ambient_visibility_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
         let (open, rays) = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
         self.sky_account.rays += rays;
         let write = || writer.write_vertices(&glb::write_vertices(scene, attribute, &open)?).map_err(BakeError::from);
@@ -85,7 +88,7 @@ impl PageBaker<'_> {
             [one] => points.push(point(one)),
             several => sky.engine.add_visible(several.iter().map(point), points),
         };
-        let runs = find_ambient(sky.engine, order.len(), texel, |count| {
+        let runs = solve_ambient(sky.engine, order.len(), texel, |count| {
             progress.advance(count as u64);
             !progress.is_cancelled()
         })

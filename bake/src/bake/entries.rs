@@ -40,7 +40,7 @@ fn path_entry(path: &SunPath) -> PathEntry {
     let day = path.day.as_ref();
     let both = |text: &dyn Fn(f64) -> Option<String>| Some([text(0.0)?, text(1.0)?]);
     PathEntry {
-        place: day.map(|d| manifest::Place { latitude_deg: d.latitude_deg, longitude_deg: d.longitude_deg }),
+        place: day.map(|d| manifest::GeoLocation { latitude_deg: d.latitude_deg, longitude_deg: d.longitude_deg }),
         date: day.map(|d| d.date.clone()),
         utc_offset_h: day.map(|d| d.utc_offset_h),
         north_deg: day.map(|d| d.north_deg),

@@ -3,7 +3,7 @@
 use super::BakeError;
 use crate::ambient::Estimate;
 use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, Sample};
-use crate::progress::{Progress, Stage};
+use crate::progress::{BakeStage, Progress};
 use crate::scene::Scene;
 use crate::settings::{AmbientRequest, BakeSettings};
 
@@ -54,7 +54,7 @@ fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> String {
 }
 
 fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
-    progress.start(Stage::Unwrap, 1000);
+    progress.start(BakeStage::Unwrap, 1000);
     let told = std::sync::atomic::AtomicU64::new(0);
     let atlas_settings = AtlasSettings {
         density: settings.density,

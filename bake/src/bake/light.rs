@@ -3,13 +3,13 @@
 use crate::disk::manifest::{ErrorEntry, LampStats};
 use crate::loss::LossTally;
 use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder};
-use crate::progress::Stage;
+use crate::progress::BakeStage;
 use crate::settings::BakeSettings;
 use crate::visibility::{Engine, Intervals, Work};
 
 /// Who answers when texels see a light.
 #[derive(Clone, Copy)]
-pub(super) struct Light<'a> {
+pub(super) struct LightJob<'a> {
     /// Answers for as many lanes as there are.
     pub engine: &'a dyn Engine,
     /// The lanes across the disc; one for a lamp.
@@ -17,7 +17,7 @@ pub(super) struct Light<'a> {
     /// Minutes of the path.
     pub duration_min: f64,
     /// What to tell a listener while its intervals are found.
-    pub stage: Stage,
+    pub stage: BakeStage,
 }
 
 /// What came of a light so far, over all pages.
@@ -36,7 +36,7 @@ pub(super) struct Account {
 pub(super) struct LaneEncoders(Vec<(Lane, PageEncoder)>);
 
 impl LaneEncoders {
-    pub fn new(light: &Light, texel_count: usize, settings: &BakeSettings) -> Self {
+    pub fn new(light: &LightJob, texel_count: usize, settings: &BakeSettings) -> Self {
         let encoder = |&lane| (lane, PageEncoder::new(texel_count, settings.bits, settings.layer_cap));
         Self(light.lanes.iter().map(encoder).collect())
     }
@@ -75,7 +75,7 @@ impl LaneEncoders {
 
 impl Account {
     /// What the manifest says of a lamp.
-    pub fn of_lamp(self, light: &Light) -> (LampStats, ErrorEntry) {
+    pub fn of_lamp(self, light: &LightJob) -> (LampStats, ErrorEntry) {
         let Self { work, intervals, dark_texels, most_intervals, loss, .. } = self;
         let stats = LampStats { engine: light.engine.name(), rays: work.rays, intervals, dark_texels, most_intervals };
         (stats, loss.finish(light.duration_min))

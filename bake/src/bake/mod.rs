@@ -15,7 +15,7 @@ use crate::glb::{self, GlbTooLarge, Occlusion};
 use crate::lamp::{self, LampError, LampPath};
 use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan, LayersNeeded};
-use crate::progress::{Progress, Stage};
+use crate::progress::{BakeStage, Progress};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
@@ -26,7 +26,7 @@ use entries::{instance_entries, loss_warnings, manifest_of};
 pub(crate) use layout::unwrap_somehow;
 use layout::{BYTES_PER_SAMPLE, check_memory};
 use leave_out::{darkness_warning, leave_out};
-use light::{Account, Light};
+use light::{Account, LightJob};
 use pages::{Lights, PageBaker};
 use std::path::Path;
 use std::time::Instant;
@@ -142,7 +142,7 @@ pub struct Prepared {
 
 /// Reads the scene and decides what to bake.
 pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progress) -> Result<Prepared, BakeError> {
-    progress.start(Stage::Load, 0);
+    progress.start(BakeStage::Load, 0);
     let started = Instant::now();
     let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
     let mut scene = scene::load(scene_file, &limits)?;
@@ -216,18 +216,19 @@ fn bake_prepared(
     let mut warnings = prepared.warnings.clone();
     let (atlas, settings) = &timed(&mut seconds.unwrap, || unwrap_somehow(scene, settings, &mut warnings, progress))?;
 
-    progress.start(Stage::Bvh, 0);
+    progress.start(BakeStage::Bvh, 0);
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let sun = engine.as_deref().map(|engine| Light { engine, lanes: &lanes, duration_min, stage: Stage::Visibility });
+    let sun =
+        engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, stage: BakeStage::Visibility });
     let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
     let lamp = lamp.as_ref().zip(lamp_engine.as_deref()).map(|(path, engine)| {
         let duration_min = path.duration_min();
-        Light { engine, lanes: &[Lane::CENTRE], duration_min, stage: Stage::Lamp }
+        LightJob { engine, lanes: &[Lane::CENTRE], duration_min, stage: BakeStage::Lamp }
     });
     let normals = ShadingNormals::new(scene);
     let request = settings.ambient.as_ref();

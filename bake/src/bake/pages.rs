@@ -1,7 +1,7 @@
 //! The pages of a bake, one after the other, so that only one is in memory.
 
 use super::ambient::{Sky, SkyAccount};
-use super::light::{Account, LaneEncoders, Light};
+use super::light::{Account, LaneEncoders, LightJob};
 use super::{BakeError, check_cancelled, timed};
 use crate::ambient::AmbientPage;
 use crate::atlas::{self, Atlas, PageSamples};
@@ -10,7 +10,7 @@ use crate::disk::write::SetWriter;
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{LaneMaps, PageMaps};
-use crate::progress::{Progress, Stage};
+use crate::progress::{BakeStage, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::visibility::{self, IntervalTable, Work};
@@ -20,9 +20,9 @@ use std::time::Instant;
 #[derive(Clone, Copy)]
 pub(super) struct Lights<'a> {
     /// None where the sun does not rise, or is not asked for.
-    pub sun: Option<Light<'a>>,
+    pub sun: Option<LightJob<'a>>,
     /// A lamp that moves through the scene.
-    pub lamp: Option<Light<'a>>,
+    pub lamp: Option<LightJob<'a>>,
     /// Light from all around.
     pub sky: Option<Sky<'a>>,
 }
@@ -86,7 +86,7 @@ impl<'a> PageBaker<'a> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
         for index in 0..self.atlas.pages.len() {
             let (maps, ambient) = self.bake(index)?;
-            self.progress.start(Stage::Write, 0);
+            self.progress.start(BakeStage::Write, 0);
             let loss_map = self.loss_map.take();
             let write = || {
                 let entry = writer.write_page(index, &maps, self.settings.bits)?;
@@ -134,20 +134,20 @@ impl<'a> PageBaker<'a> {
     fn bake_light(
         &mut self,
         page: usize,
-        light: &Light,
+        light: &LightJob,
         account: &mut Account,
         samples: &PageSamples,
         order: &[u32],
     ) -> Result<Vec<LaneMaps>, BakeError> {
-        let (tables, work) = self.find_lit(light, samples, order).ok_or(BakeError::Cancelled)?;
+        let (tables, work) = self.solve_visibility(light, samples, order).ok_or(BakeError::Cancelled)?;
         account.work = account.work + work;
         Ok(self.encode(page, light, account, samples, order, &tables))
     }
 
     /// Answers in the given order of samples.
-    fn find_lit(
+    fn solve_visibility(
         &mut self,
-        light: &Light,
+        light: &LightJob,
         PageSamples { samples }: &PageSamples,
         order: &[u32],
     ) -> Option<(Vec<IntervalTable>, Work)> {
@@ -155,7 +155,7 @@ impl<'a> PageBaker<'a> {
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
             let point = |i: usize| atlas::surface_point(scene, geometry, &samples[order[i] as usize]);
-            visibility::find_lit(light.engine, samples.len(), point, |count| {
+            visibility::solve_visibility(light.engine, samples.len(), point, |count| {
                 progress.advance(count as u64);
                 !progress.is_cancelled()
             })
@@ -165,14 +165,14 @@ impl<'a> PageBaker<'a> {
     fn encode(
         &mut self,
         page: usize,
-        light: &Light,
+        light: &LightJob,
         account: &mut Account,
         samples: &PageSamples,
         order: &[u32],
         tables: &[IntervalTable],
     ) -> Vec<LaneMaps> {
         let PageSamples { samples: texels } = samples;
-        self.progress.start(Stage::Encode, texels.len() as u64);
+        self.progress.start(BakeStage::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);

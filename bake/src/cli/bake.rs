@@ -72,7 +72,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     let preset = match args.preset {
         Preset::Draft => BakeSettings::draft(sun),
         Preset::Standard => BakeSettings::standard(sun),
-        Preset::Final => BakeSettings::last(sun),
+        Preset::Final => BakeSettings::final_quality(sun),
     };
     let cost = &args.cost;
     let engine = cost.engine.unwrap_or(preset.engine);

@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
-use sunbake::progress::{Progress, Stage};
+use sunbake::progress::{BakeStage, Progress};
 use sunbake::signals::Signals;
 
 /// Draws one line on stderr while a bake runs, and stops the bake at a signal.
@@ -41,7 +41,7 @@ impl TerminalProgress {
 
 impl TerminalProgress {
     /// What to say of a stage.
-    fn message(&self, stage: Stage) -> String {
+    fn message(&self, stage: BakeStage) -> String {
         match self.task.lock() {
             Ok(task) if !task.is_empty() => format!("{task}: {}", stage.verb()),
             _ => stage.verb().into(),
@@ -56,7 +56,7 @@ impl Progress for TerminalProgress {
         }
     }
 
-    fn start(&self, stage: Stage, total: u64) {
+    fn start(&self, stage: BakeStage, total: u64) {
         self.clear();
         if !self.draws {
             return;

@@ -1,6 +1,6 @@
 //! The time that measuring may take.
 
-use crate::progress::{Progress, Stage};
+use crate::progress::{BakeStage, Progress};
 use crate::report::with_unit;
 use std::time::Instant;
 
@@ -52,7 +52,7 @@ impl Progress for Budget<'_> {
         self.progress.task(name);
     }
 
-    fn start(&self, stage: Stage, total: u64) {
+    fn start(&self, stage: BakeStage, total: u64) {
         self.progress.start(stage, total);
     }
 

@@ -16,24 +16,24 @@
 //! sampled: only those texels are baked that the points read, which gives its error, and its time is predicted (`around.rs`).
 //! What was not run is said, with the prediction. So a small budget gives a short report, not a wrong one.
 //!
-//! Read on: `jobs.rs` (what is run, and in which order), `subject.rs` (the scene), `difference.rs` (errors), `knee.rs`,
+//! Read on: `jobs.rs` (what is run, and in which order), `workload.rs` (the scene), `difference.rs` (errors), `knee.rs`,
 //! `advice.rs` (words), `html.rs` (the page), `report.rs` (the file).
 
 mod advice;
-mod around;
 mod budget;
-mod difference;
 mod html;
-mod jobs;
 mod knee;
-mod knobs;
 mod load;
-mod played;
+mod metric;
+mod playback;
 pub mod report;
-mod subject;
+mod schedule;
+mod sparse_bake;
+mod sweeps;
 #[cfg(test)]
 mod tests;
 mod truth;
+mod workload;
 
 pub use html::html;
 pub use report::CostReport;
@@ -48,7 +48,7 @@ use crate::settings::{BakeSettings, SunRequest};
 use budget::Budget;
 use report::{SceneEntry, SunEntry};
 use std::path::Path;
-use subject::Subject;
+use workload::Workload;
 
 /// What is to be measured, and how long that may take.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,8 +119,8 @@ pub fn cost(
     progress: &dyn Progress,
 ) -> Result<CostReport, CostError> {
     let budget = Budget::new(settings.budget_s, progress);
-    let subject = Subject::new(scene_file, settings, &budget)?;
-    let mut jobs = jobs::Jobs::new(&subject, settings, work_folder, &budget)?;
+    let workload = Workload::new(scene_file, settings, &budget)?;
+    let mut jobs = schedule::Jobs::new(&workload, settings, work_folder, &budget)?;
     jobs.run_all()?;
     let (sweeps, reference) = jobs.finish();
     let mut report = CostReport {
@@ -128,19 +128,19 @@ pub fn cost(
         version: report::VERSION,
         generator: concat!("sunbake ", env!("CARGO_PKG_VERSION")).into(),
         scene: SceneEntry {
-            file: subject.scene().source.file_name.clone(),
-            sha256: subject.scene().source.sha256.clone(),
-            triangles: subject.scene().triangle_count() as u64,
+            file: workload.scene().source.file_name.clone(),
+            sha256: workload.scene().source.sha256.clone(),
+            triangles: workload.scene().triangle_count() as u64,
         },
-        sun: sun_entry(&subject),
+        sun: sun_entry(&workload),
         machine: Machine::here(settings.threads),
         budget_s: settings.budget_s,
         spent_s: budget.spent_s(),
-        cores_share: subject.cores_share(),
+        cores_share: workload.cores_share(),
         reference,
         sweeps,
         advice: Vec::new(),
-        warnings: subject.warnings().to_vec(),
+        warnings: workload.warnings().to_vec(),
     };
     report.warnings.extend(crowded(&report));
     report.advice = advice::words(&report);
@@ -160,8 +160,8 @@ fn crowded(report: &CostReport) -> Option<String> {
     ))
 }
 
-fn sun_entry(subject: &Subject) -> SunEntry {
-    let path = subject.path();
+fn sun_entry(workload: &Workload) -> SunEntry {
+    let path = workload.path();
     let local = [0.0, 1.0].map(|t| path.local_text(t));
     let local = match local {
         [Some(start), Some(end)] => Some([start, end]),

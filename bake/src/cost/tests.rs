@@ -1,11 +1,11 @@
 //! Whether errors are what they say: known answers first, then a bake against the same bake by another way.
 
 use super::budget::Budget;
-use super::difference::of_disc;
-use super::played::{self, Blend, Shown};
-use super::subject::Subject;
-use super::truth::{Place, Truth};
-use super::{CostSettings, around::around};
+use super::metric::of_disc;
+use super::playback::{self, Blend, Shown};
+use super::truth::{SurfaceSample, Truth};
+use super::workload::Workload;
+use super::{CostSettings, sparse_bake::around};
 use crate::atlas::{self, AtlasSettings, SurfacePoint};
 use crate::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::Silent;
@@ -33,7 +33,7 @@ fn summer_path() -> SunPath {
 fn shown_minutes(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
     let path = summer_path();
     let surface = SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0 };
-    let place = Place { surface, barycentric: [0.3; 2], is_back: false, start: 0.37, shading_normal: DVec3::Y };
+    let place = SurfaceSample { surface, barycentric: [0.3; 2], is_back: false, start: 0.37, shading_normal: DVec3::Y };
     let lit = Intervals::from_unsorted(truth.to_vec());
     let sun = of_disc(&[lit], &[Lane::CENTRE], &path, place.start);
     let truth = Truth { places: vec![place], sun: vec![sun], open: vec![0.0], buried: 0 };
@@ -104,19 +104,19 @@ fn settings() -> CostSettings {
 }
 
 /// Errors of a small bake at 300 points, from its files and from the texels around the points.
-fn both_ways(scene: &Scene, lane_count: usize) -> [played::Errors; 2] {
+fn both_ways(scene: &Scene, lane_count: usize) -> [playback::Errors; 2] {
     let desk = tempfile::tempdir().unwrap();
     let file = file(scene, desk.path());
     let settings = settings();
     let budget = Budget::new(settings.budget_s, &Silent);
-    let subject = Subject::new(&file, &settings, &budget).unwrap();
-    let truth = Truth::find(&subject, 300, &budget).unwrap();
+    let workload = Workload::new(&file, &settings, &budget).unwrap();
+    let truth = Truth::find(&workload, 300, &budget).unwrap();
     let standard = settings.preset(BakeSettings::standard);
     let asked = BakeSettings { page_size_texels: 64, lane_count, ..standard };
     bake(&file, &desk.path().join("set"), false, &asked, &Silent).unwrap();
     let set = disk::read::read(&desk.path().join("set")).unwrap();
-    let whole = played::errors(&set, &truth, subject.scene()).unwrap();
-    let sampled = around(&subject, &truth, &asked, &budget).unwrap().unwrap();
+    let whole = playback::errors(&set, &truth, workload.scene()).unwrap();
+    let sampled = around(&workload, &truth, &asked, &budget).unwrap().unwrap();
     assert_eq!(sampled.texels, set.manifest.stats.texels);
     [whole, sampled.errors]
 }

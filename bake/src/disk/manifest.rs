@@ -72,7 +72,7 @@ pub struct SceneEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathEntry {
     /// Where, if the path is that of a real day.
-    pub place: Option<Place>,
+    pub place: Option<GeoLocation>,
     /// The local date at the path's start, `YYYY-MM-DD`, if it is a real day.
     pub date: Option<String>,
     /// Hours local clocks are ahead of UTC.
@@ -97,7 +97,7 @@ pub struct PathEntry {
 
 /// A place on Earth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Place {
+pub struct GeoLocation {
     /// Degrees north.
     pub latitude_deg: f64,
     /// Degrees east.
@@ -332,7 +332,8 @@ pub struct EffectEntry {
     pub cost: String,
     /// The flag, or the property of the scene, that would turn it over.
     #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub turned_over_by: String,
+    #[serde(alias = "turned_over_by")]
+    pub toggled_by: String,
 }
 
 /// What the bake took.

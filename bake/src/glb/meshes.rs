@@ -84,7 +84,7 @@ pub(super) fn write(
                     shared.primitive(add_uvs(&occlusion.page_uvs(scene, instance)), materials[instance])
                 }
                 (Looks::AtVertices(attribute, open), Some(instance)) => {
-                    let accessor = add_openness(&scene.meshes[mesh], *attribute, &open[instance], binary);
+                    let accessor = add_ambient_visibility(&scene.meshes[mesh], *attribute, &open[instance], binary);
                     shared.with(attribute.name(), accessor, material)
                 }
                 _ => shared.primitive(add_uvs(&layout.uvs), material),
@@ -97,7 +97,7 @@ pub(super) fn write(
 }
 
 /// Adds openness as it is stored at vertices.
-fn add_openness(mesh: &Mesh, attribute: VertexAttribute, open: &[f32], binary: &mut Binary) -> usize {
+fn add_ambient_visibility(mesh: &Mesh, attribute: VertexAttribute, open: &[f32], binary: &mut Binary) -> usize {
     let color = |(vertex, &open): (usize, &f32)| {
         let color = mesh.colors.as_ref().map_or(Vec4::ONE, |colors| colors[vertex]);
         (color.truncate() * open).extend(color.w).to_array()

@@ -100,21 +100,21 @@ impl Facet {
             is_on,
             why: if is_on { (self.why)(request) } else { self.why_off.into() },
             cost: (self.cost)(request),
-            turned_over_by: self.by[usize::from(!is_on)].into(),
+            toggled_by: self.by[usize::from(!is_on)].into(),
         }
     }
 
     /// Of a bake without ambient light, which says neither how many rays nor how many bits.
     fn left_out(&self) -> Decision {
         let own = self.by[1];
-        let (cost, turned_over_by) = match self.effect {
+        let (cost, toggled_by) = match self.effect {
             Effect::AmbientOcclusion => {
                 ("as many rays a texel and side as --ao-rays says, and 1 or 2 bytes".into(), own.into())
             }
             Effect::VertexAmbient => ("as many rays a vertex and side as --ao-rays says".into(), with_ao(own)),
             _ => ((self.cost)(&AmbientRequest::with_rays(0)), with_ao(own)),
         };
-        Decision { effect: self.effect, is_on: false, why: "--only asks for no ao".into(), cost, turned_over_by }
+        Decision { effect: self.effect, is_on: false, why: "--only asks for no ao".into(), cost, toggled_by }
     }
 }
 

@@ -6,9 +6,9 @@
 
 mod ambient;
 mod times;
-mod words;
+mod wording;
 
-pub use words::{in_words, said};
+pub use wording::{in_words, said};
 
 use crate::disk::manifest::EffectEntry;
 use crate::lamp::LampPath;
@@ -86,7 +86,7 @@ pub struct Decision {
     /// What it costs while it is on; of what is off, what it would.
     pub cost: String,
     /// The flag, or the property of the scene, that would turn it over.
-    pub turned_over_by: String,
+    pub toggled_by: String,
 }
 
 /// All verdicts, in the order of [`Effect`].
@@ -149,7 +149,7 @@ impl EffectPlan {
             on: d.is_on,
             why: d.why.clone(),
             cost: d.cost.clone(),
-            turned_over_by: d.turned_over_by.clone(),
+            toggled_by: d.toggled_by.clone(),
         };
         self.decisions.iter().map(entry).collect()
     }

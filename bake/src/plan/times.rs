@@ -50,7 +50,7 @@ impl Times<'_> {
                 bytes_of_times(self.settings.bits),
                 engine_cost(self.settings.engine)
             ),
-            turned_over_by: match (is_on, self.settings.bakes_intervals, self.lamp.is_some()) {
+            toggled_by: match (is_on, self.settings.bakes_intervals, self.lamp.is_some()) {
                 (true, _, _) => "--only ao",
                 (false, false, _) => "intervals among what --only names",
                 (false, true, true) => "a lamp given as --lamp FILE, not as --path FILE",
@@ -74,7 +74,7 @@ impl Times<'_> {
                 bytes_of_times(self.settings.bits),
                 engine_cost(self.settings.engine)
             ),
-            turned_over_by: if self.lamp.is_some() { "leaving the lamp's FILE out" } else { "--lamp FILE" }.into(),
+            toggled_by: if self.lamp.is_some() { "leaving the lamp's FILE out" } else { "--lamp FILE" }.into(),
         }
     }
 
@@ -93,7 +93,7 @@ impl Times<'_> {
             is_on,
             why,
             cost: "no texture and no ray; playback measures how much of the light's width each interval fills".into(),
-            turned_over_by: if is_on {
+            toggled_by: if is_on {
                 "a radius of 0 in the light's FILE (\"angular_radius_deg\", or of a lamp \"radius_m\")"
             } else {
                 "a radius above 0 in the light's FILE (\"angular_radius_deg\", or of a lamp \"radius_m\")"
@@ -124,7 +124,7 @@ impl Times<'_> {
             is_on,
             why,
             cost: format!("{times} times the bytes of one lane's times, and {times} times the work of finding them"),
-            turned_over_by: by.into(),
+            toggled_by: by.into(),
         }
     }
 
@@ -144,7 +144,7 @@ impl Times<'_> {
             is_on,
             why,
             cost: format!("{} and lane for each layer beyond the first", bytes_of_times(self.settings.bits)),
-            turned_over_by: by.into(),
+            toggled_by: by.into(),
         }
     }
 
@@ -162,7 +162,7 @@ impl Times<'_> {
             is_on,
             why,
             cost: "twice the bytes of times: 16 a texel, layer and lane, where 8 bits take 8".into(),
-            turned_over_by: match (is_on, self.has_times()) {
+            toggled_by: match (is_on, self.has_times()) {
                 (true, _) => "--bits 8",
                 (false, true) => "--bits 16",
                 (false, false) => "times to store",
@@ -189,7 +189,7 @@ impl Times<'_> {
             why: why.into(),
             cost: "a PNG of 4 and an OpenEXR of 8 bytes a texel of each page; 24 bytes of memory a texel meanwhile"
                 .into(),
-            turned_over_by: by.into(),
+            toggled_by: by.into(),
         }
     }
 }
@@ -210,7 +210,7 @@ fn alpha_cut(scene: &Scene) -> Decision {
             0 => "alpha looked up wherever a triangle with holes is met".into(),
             n => format!("alpha looked up wherever one of {n} triangles with holes is met"),
         },
-        turned_over_by: match surfaces {
+        toggled_by: match surfaces {
             0 => "a material with alphaMode MASK or BLEND",
             _ => "--leave-out MATERIAL, or alphaMode OPAQUE",
         }
@@ -228,7 +228,7 @@ fn double_sided(scene: &Scene) -> Decision {
             "times serve both sides; ambient light takes rays and bytes for a second side{}",
             if triangles > 0 { format!(" of {triangles} triangles") } else { String::new() }
         ),
-        turned_over_by: match surfaces {
+        toggled_by: match surfaces {
             0 => "a material with \"doubleSided\": true",
             _ => "--leave-out MATERIAL, or \"doubleSided\": false",
         }
@@ -270,6 +270,6 @@ pub(super) fn settle(decision: &mut Decision, needed: LayersNeeded) {
         _ => format!("{crowded}, and --layers 1 merged them"),
     };
     if was_allowed && layers < 2 {
-        decision.turned_over_by = "a scene that is lit in more pieces: through fences, wires or leaves".into();
+        decision.toggled_by = "a scene that is lit in more pieces: through fences, wires or leaves".into();
     }
 }

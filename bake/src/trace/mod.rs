@@ -11,18 +11,18 @@
 //! * **Tracer space.** Its nodes clamp sizes to an absolute 1e-4. The scene is therefore scaled by a power of two, which
 //!   loses no bit, until its half size lies between 512 and 1024 units.
 
-mod cuts;
+mod alpha_mask;
+pub(crate) mod bvh16;
 mod direction;
+mod packet;
 mod reach;
-mod scatter;
-pub(crate) mod wide;
 
 pub use direction::Direction;
-pub use scatter::{PACKET, Scatter, ScatterRoom, ShadowQuery};
+pub use packet::{PACKET, PacketScratch, PacketTracer, ShadowQuery};
 
 use crate::scene::{Geometry, Scene};
-pub(crate) use cuts::CutView;
-use cuts::Cuts;
+use alpha_mask::AlphaMasks;
+pub(crate) use alpha_mask::CutView;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
@@ -45,7 +45,7 @@ pub struct Tracer {
     corners: Vec<[Vec3; 3]>,
     /// Flat index in [`Geometry`], in the hierarchy's order.
     flat: Vec<u32>,
-    cuts: Cuts,
+    alpha_mask: AlphaMasks,
     tracer_from_bake: f64,
     /// How far shadow rays start before their origin, in tracer space: half of the least lift, so that a point exactly
     /// on the edge where two walls meet is shaded by both, and by its own surface never.
@@ -88,12 +88,12 @@ impl Tracer {
         };
         let flat: Vec<u32> = bvh.primitive_indices.iter().map(|&i| solid[i as usize]).collect();
         let corners = flat.iter().map(scaled).collect();
-        let cuts = Cuts::new(scene, geometry, &flat);
+        let alpha_mask = AlphaMasks::new(scene, geometry, &flat);
         let lift_m = lifts_m(scene, geometry);
         let run_up = 0.5 * tracer_from_bake * lift_m.iter().copied().reduce(f64::min).unwrap_or(0.0);
         let centroid_m = geometry.triangles.iter().map(|[a, b, c]| (a + b + c) / 3.0).collect();
         let instance = geometry.instance.clone();
-        Self { bvh, corners, flat, cuts, tracer_from_bake, run_up, lift_m, centroid_m, instance }
+        Self { bvh, corners, flat, alpha_mask, tracer_from_bake, run_up, lift_m, centroid_m, instance }
     }
 
     /// Where a shadow ray from a point of a triangle should start: off the surface, along `side` (its unit normal, or
@@ -113,13 +113,13 @@ impl Tracer {
 
     /// Whether a triangle has holes cut by alpha.
     #[inline]
-    pub(crate) fn has_holes(&self, id: u32) -> bool {
-        self.cuts.has_holes(id as usize)
+    pub(crate) fn has_alpha_mask(&self, id: u32) -> bool {
+        self.alpha_mask.has_alpha_mask(id as usize)
     }
 
     /// A triangle with holes.
     pub(crate) fn cut(&self, id: u32) -> Option<CutView<'_>> {
-        self.cuts.view(id as usize)
+        self.alpha_mask.view(id as usize)
     }
 
     /// Scale of tracer space: a power of two.
@@ -220,7 +220,7 @@ impl Tracer {
     #[inline]
     fn meet(&self, origin: DVec3, direction: &Direction, id: usize) -> Option<(f64, [f64; 2])> {
         let met = direction.meet(origin, &self.corners[id])?;
-        self.cuts.is_solid(id, met.1).then_some(met)
+        self.alpha_mask.is_solid(id, met.1).then_some(met)
     }
 }
 

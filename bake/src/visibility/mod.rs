@@ -80,7 +80,7 @@ const RUN: usize = 1024;
 /// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points, of each
 /// point one for each of the engine's lanes.
 /// `on_progress` gets the number of points that were done and returns false to stop; then there is no answer.
-pub fn find_lit(
+pub fn solve_visibility(
     engine: &dyn Engine,
     point_count: usize,
     point: impl Fn(usize) -> SurfacePoint + Sync,

@@ -109,7 +109,7 @@ fn every_effect_says_what_it_costs_and_what_turns_it_over() {
         assert_eq!(plan.len(), 15);
         for effect in plan {
             let is_said = |key: &str| effect[key].as_str().is_some_and(|text| text.len() > 3);
-            assert!(is_said("why") && is_said("cost") && is_said("turned_over_by"), "{effect}");
+            assert!(is_said("why") && is_said("cost") && is_said("toggled_by"), "{effect}");
         }
     }
     let told = desk.run(&["bake", "floor.glb", "--explain"]).ok().stdout;
@@ -127,7 +127,7 @@ fn a_set_that_says_less_of_its_effects_is_still_read() {
     let mut manifest = Baked::of(&desk, &LEAST).manifest;
     for effect in manifest["effects"].as_array_mut().expect("a list") {
         let effect = effect.as_object_mut().expect("an effect");
-        assert!(effect.remove("cost").is_some() && effect.remove("turned_over_by").is_some());
+        assert!(effect.remove("cost").is_some() && effect.remove("toggled_by").is_some());
     }
     desk.write("out/set/sunbake.json", manifest.to_string().as_bytes());
     let told = desk.run(&["inspect", "out/set"]).ok().stdout;

@@ -282,7 +282,7 @@ impl AmbientChoice {
             Self::Best => None,
             Self::Sh2 => Some((AmbientModel::Sky, "--sky sh2")),
             Self::Bent => Some((AmbientModel::Bent, "--bent")),
-            Self::Ao => Some((AmbientModel::Openness, "--only intervals,ao")),
+            Self::Ao => Some((AmbientModel::Occlusion, "--only intervals,ao")),
             Self::Hemisphere => Some((AmbientModel::Hemisphere, "")),
         }
     }

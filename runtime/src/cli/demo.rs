@@ -1,7 +1,7 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
 use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
-use super::artist::{open_gpu, set_threads, technique, view};
+use super::draw::{open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, make_folder, write_rgb};
 use super::out;

@@ -7,7 +7,7 @@ use sunbake::BakeError;
 use sunbake::disk::read::ReadError;
 use sunbake::report::folder::FolderError;
 use sunbake::scene::ErrorClass;
-use sunbake_runtime::compare::ContestError;
+use sunbake_runtime::compare::ComparisonError;
 use sunbake_runtime::gpu::GpuError;
 use sunbake_runtime::stage::StageError;
 
@@ -71,12 +71,12 @@ impl From<BakeError> for Failure {
     }
 }
 
-impl From<ContestError> for Failure {
-    fn from(error: ContestError) -> Self {
+impl From<ComparisonError> for Failure {
+    fn from(error: ComparisonError) -> Self {
         match error {
-            ContestError::Stage(error) => error.into(),
-            ContestError::Reference { .. } => Self { code: 5, error: error.into() },
-            ContestError::Cancelled => Self { code: 130, error: error.into() },
+            ComparisonError::Stage(error) => error.into(),
+            ComparisonError::Reference { .. } => Self { code: 5, error: error.into() },
+            ComparisonError::Cancelled => Self { code: 130, error: error.into() },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `sunplay frame`.
 
 use super::args::FrameArgs;
-use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
+use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
 use super::out;

@@ -1,7 +1,7 @@
 //! `sunplay frames`.
 
 use super::args::FramesArgs;
-use super::artist::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
+use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
 use super::out;

@@ -1,9 +1,9 @@
 //! The command line: parse, run, print what went wrong, exit.
 
 mod args;
-mod artist;
 mod compare;
 mod demo;
+mod draw;
 mod exit;
 mod files;
 mod frame;

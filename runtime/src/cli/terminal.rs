@@ -4,7 +4,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
-use sunbake::progress::{Progress, Stage};
+use sunbake::progress::{BakeStage, Progress};
 use sunbake::signals::Signals;
 
 /// One line on stderr, while there is something to wait for.
@@ -72,7 +72,7 @@ impl Terminal {
 }
 
 impl Progress for Terminal {
-    fn start(&self, stage: Stage, total: u64) {
+    fn start(&self, stage: BakeStage, total: u64) {
         self.begin(stage.verb(), total);
     }
 

@@ -13,7 +13,7 @@ use super::neighbours;
 use crate::image::Raster;
 use crate::light::Moment;
 use crate::shot::Shot;
-use crate::technique::{Light, Truth};
+use crate::technique::{LightKind, Truth};
 use crate::volumes::nearest::nearest;
 use glam::{DVec3, Vec3};
 use sunbake::trace::Hit;
@@ -55,7 +55,7 @@ impl MaskAgreement {
     pub fn new(
         shot: &Shot,
         moment: &Moment,
-        light: Light,
+        light: LightKind,
         mask: &Raster<f32>,
         truth: &Raster<f32>,
         depths_m: &[f32],
@@ -114,7 +114,7 @@ impl MaskAgreement {
 struct Excuses<'a> {
     shot: &'a Shot<'a>,
     moment: &'a Moment,
-    light: Light,
+    light: LightKind,
 }
 
 impl Excuses<'_> {
@@ -151,7 +151,7 @@ impl Excuses<'_> {
         let point_m = stage.geometry.point(hit.triangle as usize, hit.barycentric);
         let pixel_m = hit.distance_m * f64::from(self.shot.view.pixel_angle_rad);
         let (way, length_m) = match (self.light, &self.moment.lamp) {
-            (Light::Lamp, Some(lamp)) => {
+            (LightKind::Lamp, Some(lamp)) => {
                 let way_m = lamp.position_m.as_dvec3() - point_m;
                 (way_m.normalize(), way_m.length())
             }

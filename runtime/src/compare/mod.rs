@@ -4,22 +4,22 @@
 //! every number, they may still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it
 //! lies: pixels within one pixel of such an edge are counted apart ([`edges`]).
 
-mod contender;
-mod contest;
-mod defects;
+mod acne_and_leaks;
+mod comparison;
 mod limits;
 mod mask;
 pub mod report;
 mod score;
 mod sheet;
+mod technique;
 
-pub use contender::{Contender, Playback, selected};
-pub use contest::{Contest, ContestError, LitFrame, Outcome, SetOnDisk, codes, lit_by};
-pub use defects::Defects;
+pub use acne_and_leaks::Defects;
+pub use comparison::{Comparison, ComparisonError, LitFrame, Outcome, SetOnDisk, codes, lit_by};
 pub use limits::{Limit, Limited};
 pub use mask::{FINE_PX, MaskAgreement};
 pub use score::{Score, Tally, luma, structural_similarity};
 pub use sheet::{Pair, sheet};
+pub use technique::{Playback, TechniqueSpec, selected};
 
 use crate::image::Raster;
 use crate::light::{codes_from_display, display_from_light};

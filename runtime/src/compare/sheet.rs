@@ -1,6 +1,6 @@
 //! A comparison on one sheet: a baked set beside a live technique, and how far each is from the reference.
 
-use super::contest::{Outcome, lit_by};
+use super::comparison::{Outcome, lit_by};
 use super::report::TechniqueEntry;
 use super::visibility_difference;
 use crate::image::Raster;

@@ -27,7 +27,7 @@ pub fn need(effect: &'static str, on: Option<(Census, String)>, why: String, mor
         (true, false, true) => counted,
         (true, false, false) => format!("{counted}; {words}"),
     };
-    Need { effect, is_on, why, takes, cost, turned_over_by: by[usize::from(!is_on)].into() }
+    Need { effect, is_on, why, takes, cost, toggled_by: by[usize::from(!is_on)].into() }
 }
 
 /// Verdicts on what a stage's scene calls for where nothing but its maps takes anything, and their bytes.
@@ -180,10 +180,10 @@ impl SceneEffects<'_> {
     }
 
     fn of_ambient(&self) -> [Need; 4] {
-        use AmbientModel::{Bent, Hemisphere, Openness, Sky};
+        use AmbientModel::{Bent, Hemisphere, Occlusion, Sky};
         let models: BTreeSet<AmbientModel> = self.scene.pages.iter().map(|page| page.variant.ambient).collect();
         let has = |model| models.contains(&model);
-        let has_openness = has(Openness) || has(Bent);
+        let has_occlusion = has(Occlusion) || has(Bent);
         let instead = |of: &'static [AmbientModel], by: AmbientModel| {
             let saved = self.saved_by(|scene| {
                 let variants = scene.pages.iter_mut().map(|page| &mut page.variant);
@@ -197,14 +197,14 @@ impl SceneEffects<'_> {
         [
             need(
                 "ambient-occlusion",
-                has_openness.then(|| instead(&[Openness, Bent], Hemisphere)),
-                read(has_openness, "the share of sky that texels see"),
+                has_occlusion.then(|| instead(&[Occlusion, Bent], Hemisphere)),
+                read(has_occlusion, "the share of sky that texels see"),
                 "a texture and a binding a page, 2 bytes a texel and side",
                 ["--ambient hemisphere", "--ambient ao, of a set baked with ao"],
             ),
             need(
                 "bent-normals",
-                has(Bent).then(|| instead(&[Bent], Openness)),
+                has(Bent).then(|| instead(&[Bent], Occlusion)),
                 read(has(Bent), "from where texels see the sky"),
                 "a texture and a binding a page, 8 bytes a texel and side",
                 ["--ambient ao", "--ambient bent, of a set baked with --bent"],

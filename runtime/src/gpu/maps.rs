@@ -146,7 +146,7 @@ fn ambient_views(
     let in_rgba = |label, slices: Vec<Vec<u8>>| slices_view(gpu, maps, label, wgpu::TextureFormat::Rgba16Uint, &slices);
     match model {
         AmbientModel::Hemisphere => Vec::new(),
-        AmbientModel::Openness => vec![open()],
+        AmbientModel::Occlusion => vec![open()],
         AmbientModel::Bent => {
             let bent = sides.iter().flat_map(|side| &side.bent).map(|bent| padded(bent.iter().copied()));
             vec![open(), (5, in_rgba("bent normals", bent.collect()))]

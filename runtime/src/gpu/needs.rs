@@ -123,7 +123,7 @@ impl PageNeeds {
     fn ambient_textures(&self) -> usize {
         match self.variant.ambient {
             AmbientModel::Hemisphere => 0,
-            AmbientModel::Openness | AmbientModel::Sky => 1,
+            AmbientModel::Occlusion | AmbientModel::Sky => 1,
             AmbientModel::Bent => 2,
         }
     }

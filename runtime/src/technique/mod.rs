@@ -13,7 +13,7 @@ mod volumes;
 pub use baked_cpu::BakedCpu;
 pub use baked_gpu::BakedGpu;
 pub use shadow_maps::ShadowMaps;
-pub use truth::{Light, Truth};
+pub use truth::{LightKind, Truth};
 pub use volumes::Volumes;
 
 use crate::gpu::{Census, FrameTimes, GpuError, Output};

@@ -18,12 +18,12 @@ pub fn truth(stage: &Stage, rays: Option<u32>) -> DrawPlan {
         why: why.into(),
         takes: Census::default(),
         cost,
-        turned_over_by: by[usize::from(!is_on)].into(),
+        toggled_by: by[usize::from(!is_on)].into(),
     };
     let is_soft = rays.is_some();
     let why = if is_soft { "truth:soft sees the light's disc" } else { "truth:hard sees the light's middle" };
     let cost = rays.map_or("N rays a pixel and light, not one".into(), |n| format!("{n} rays a pixel and light"));
-    let (has_lamp, has_holes) = (stage.lamp.is_some(), stage.scene.has_alpha_cut());
+    let (has_lamp, has_alpha_mask) = (stage.lamp.is_some(), stage.scene.has_alpha_cut());
     let needs = vec![
         need("truth-of-disc", is_soft, why, cost, ["--technique truth:hard", "--technique truth:soft:N"]),
         need(
@@ -35,8 +35,8 @@ pub fn truth(stage: &Stage, rays: Option<u32>) -> DrawPlan {
         ),
         need(
             "alpha-test",
-            has_holes,
-            if has_holes { "surfaces have holes cut by alpha" } else { "no surface has holes" },
+            has_alpha_mask,
+            if has_alpha_mask { "surfaces have holes cut by alpha" } else { "no surface has holes" },
             "alpha looked up wherever a ray meets such a surface".into(),
             ["materials of alphaMode OPAQUE", "a material of alphaMode MASK or BLEND"],
         ),

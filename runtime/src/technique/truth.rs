@@ -43,7 +43,7 @@ impl Truth {
     fn lamp_seen(
         self,
         stage: &Stage,
-        &Seat { face, on_plane_m, point_m, origin_m }: &Seat,
+        &RayOrigin { face, on_plane_m, point_m, origin_m }: &RayOrigin,
         pixel: usize,
         lamp: &Ball,
     ) -> f32 {
@@ -63,19 +63,19 @@ impl Truth {
     }
 
     /// How much of the sun's centre, or of the lamp's, a point sees that a ray has met, moved back along the ray by a step.
-    pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: Light) -> f32 {
-        let mut seat = Seat::new(stage, ray, hit);
+    pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: LightKind) -> f32 {
+        let mut ray_origin = RayOrigin::new(stage, ray, hit);
         let back_m = ray.as_dvec3().normalize() * step_m;
-        seat.point_m -= back_m;
-        seat.origin_m -= back_m;
+        ray_origin.point_m -= back_m;
+        ray_origin.origin_m -= back_m;
         match (light, &stage.path, &moment.lamp) {
-            (Light::Sun, Some(path), _) => Self::Hard.seen(stage, &seat, 0, &sun_of(path, moment)),
-            (Light::Lamp, _, Some(lamp)) => Self::Hard.lamp_seen(stage, &seat, 0, &ball_of(lamp)),
+            (LightKind::Sun, Some(path), _) => Self::Hard.seen(stage, &ray_origin, 0, &sun_of(path, moment)),
+            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_seen(stage, &ray_origin, 0, &ball_of(lamp)),
             _ => 0.0,
         }
     }
 
-    fn seen(self, stage: &Stage, &Seat { face, origin_m, .. }: &Seat, pixel: usize, sun: &SunDisc) -> f32 {
+    fn seen(self, stage: &Stage, &RayOrigin { face, origin_m, .. }: &RayOrigin, pixel: usize, sun: &SunDisc) -> f32 {
         let tracer = stage.tracer();
         let reaches = |direction: DVec3| {
             direction.y > 0.0 && face.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
@@ -91,7 +91,7 @@ impl Truth {
 }
 
 /// What a pixel shows, as the start of rays: the side that the eye is on.
-struct Seat {
+struct RayOrigin {
     face: DVec3,
     /// A corner: by it all points of a triangle agree about whether a lamp stands before their plane.
     on_plane_m: DVec3,
@@ -99,7 +99,7 @@ struct Seat {
     origin_m: DVec3,
 }
 
-impl Seat {
+impl RayOrigin {
     fn new(stage: &Stage, ray: Vec3, hit: &Hit) -> Self {
         let triangle = hit.triangle as usize;
         let front = stage.geometry.normal(triangle);
@@ -135,7 +135,9 @@ impl Technique for Truth {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &sun) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(sun)) => self.seen(shot.stage, &Seat::new(shot.stage, shot.ray(pixel), hit), pixel, sun),
+            (Some(hit), Some(sun)) => {
+                self.seen(shot.stage, &RayOrigin::new(shot.stage, shot.ray(pixel), hit), pixel, sun)
+            }
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -147,7 +149,7 @@ impl Technique for Truth {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
             (Some(hit), Some(lamp)) => {
-                self.lamp_seen(shot.stage, &Seat::new(shot.stage, shot.ray(pixel), hit), pixel, lamp)
+                self.lamp_seen(shot.stage, &RayOrigin::new(shot.stage, shot.ray(pixel), hit), pixel, lamp)
             }
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
@@ -170,7 +172,7 @@ fn ball_of(lamp: &LampMoment) -> Ball {
 
 /// A light of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Light {
+pub enum LightKind {
     /// Far away.
     Sun,
     /// In the scene.

@@ -102,7 +102,7 @@ impl Technique for Volumes<'_> {
                 casters.crowded_edges
             ),
             format!(
-                "solid bodies throw silhouettes of what faces the light, open ones of every triangle, and {} casters that share \
+                "solid bodies extrude silhouettes of what faces the light, open ones of every triangle, and {} casters that share \
                  next to no edges a prism a triangle",
                 casters.soups
             ),

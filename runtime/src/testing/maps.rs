@@ -9,7 +9,7 @@ use crate::light::Moment;
 use crate::shadow_maps::{MapSettings, reach_m};
 use crate::shot::Shot;
 use crate::stage::Stage;
-use crate::technique::{Light, ShadowMaps, Technique, Truth};
+use crate::technique::{LightKind, ShadowMaps, Technique, Truth};
 use glam::DVec3;
 use sunbake::trace::Hit;
 
@@ -53,8 +53,8 @@ impl<'a> Seen<'a> {
     /// A view of a stage at a moment.
     pub fn new(stage: &'a Stage, view: View, moment: &Moment) -> Self {
         let shot = Shot::new(stage, view);
-        let hard = mask(&mut Truth::Hard, &shot, moment, Light::Sun);
-        let soft = mask(&mut Truth::Soft { rays: SOFT_RAYS }, &shot, moment, Light::Sun);
+        let hard = mask(&mut Truth::Hard, &shot, moment, LightKind::Sun);
+        let soft = mask(&mut Truth::Soft { rays: SOFT_RAYS }, &shot, moment, LightKind::Sun);
         Self { shot, hard, soft }
     }
 

@@ -8,7 +8,7 @@ use crate::image::Raster;
 use crate::light::Moment;
 use crate::shot::Shot;
 use crate::stage::Stage;
-use crate::technique::{Light, Technique, Truth, Volumes};
+use crate::technique::{LightKind, Technique, Truth, Volumes};
 use crate::volumes::{Mode, Savings};
 use glam::{DMat3, DVec3, Vec2};
 use sunbake::lamp::{LampKey, LampPath};
@@ -59,19 +59,19 @@ pub fn all_ways() -> Vec<VolumeSettings> {
 }
 
 /// A mask of the sun or of the lamp.
-pub fn mask(technique: &mut dyn Technique, shot: &Shot, moment: &Moment, light: Light) -> Raster<f32> {
+pub fn mask(technique: &mut dyn Technique, shot: &Shot, moment: &Moment, light: LightKind) -> Raster<f32> {
     let mask = match light {
-        Light::Sun => technique.visibility(shot, moment),
-        Light::Lamp => technique.lamp_visibility(shot, moment),
+        LightKind::Sun => technique.visibility(shot, moment),
+        LightKind::Lamp => technique.lamp_visibility(shot, moment),
     };
     mask.unwrap_or_else(|error| panic!("{}: {error}", technique.name()))
 }
 
 /// What one way of drawing volumes makes of a shot, beside truth.
-pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: Light) -> MaskAgreement {
+pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: LightKind) -> MaskAgreement {
     let truth = mask(&mut Truth::Hard, shot, moment, light);
     let found = mask(volumes, shot, moment, light);
-    let depths_m = volumes.renderer().depths_m(&shot.view, light == Light::Lamp).unwrap_or_default();
+    let depths_m = volumes.renderer().depths_m(&shot.view, light == LightKind::Lamp).unwrap_or_default();
     MaskAgreement::new(shot, moment, light, &found, &truth, &depths_m)
 }
 
@@ -83,7 +83,7 @@ pub fn assert_right(
     stage: &Stage,
     views: &[View],
     moment: &Moment,
-    light: Light,
+    light: LightKind,
 ) -> MaskAgreement {
     let all = assert_ways_agree(gpu, name, stage, views, moment, light);
     let excused = all.at_fine_edges + all.of_other_surfaces;
@@ -101,7 +101,7 @@ pub fn assert_ways_agree(
     stage: &Stage,
     views: &[View],
     moment: &Moment,
-    light: Light,
+    light: LightKind,
 ) -> MaskAgreement {
     let (all, differ) = beside_truth(gpu, name, stage, views, moment, light);
     assert!(differ.is_empty(), "{name} differs from what is planned: {differ:?}");
@@ -116,7 +116,7 @@ pub fn beside_truth(
     stage: &Stage,
     views: &[View],
     moment: &Moment,
-    light: Light,
+    light: LightKind,
 ) -> (MaskAgreement, Vec<(VolumeSettings, usize)>) {
     let mut ways: Vec<Volumes> = all_ways()
         .into_iter()

@@ -126,7 +126,7 @@ fn from_front(stage: &Stage, triangle: usize) -> [Vec3; 3] {
 
 /// What decides where a body goes; in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Place {
+struct OrderKey {
     instance: u32,
     is_open: bool,
     /// The body itself, if it is a caster alone.
@@ -153,7 +153,7 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
     let place = |body: usize| {
         let [low, high] = bounds[body].map(|corner| corner.as_dvec3());
         let is_large = (high - low).max_element() > LARGE * 2.0 * half_m;
-        Place {
+        OrderKey {
             instance: instance[body],
             is_open: bodies.shapes[body] == Shape::Open,
             alone: is_large.then_some(body as u32),
@@ -161,12 +161,12 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
             body: body as u32,
         }
     };
-    let mut places: Vec<Place> = (0..count).map(place).collect();
+    let mut places: Vec<OrderKey> = (0..count).map(place).collect();
     places.sort_unstable();
     let mut caster_of_body = vec![0; count];
     let (mut caster, mut room) = (0, 0);
     for (i, place) in places.iter().enumerate() {
-        let is_kin = |other: &Place| {
+        let is_kin = |other: &OrderKey| {
             (other.instance, other.is_open, other.alone) == (place.instance, place.is_open, place.alone)
         };
         if i > 0 && (room == 0 || !is_kin(&places[i - 1])) {
@@ -181,7 +181,7 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
     caster_of_body
 }
 
-/// Place along a curve that keeps neighbours together, of a point in the unit cube.
+/// OrderKey along a curve that keeps neighbours together, of a point in the unit cube.
 fn morton(point: DVec3) -> u32 {
     let spread =
         |x: f64| (0..10).fold(0, |code, bit| code | ((x.clamp(0.0, 1.0) * 1023.0) as u32 >> bit & 1) << (3 * bit));
@@ -189,7 +189,7 @@ fn morton(point: DVec3) -> u32 {
 }
 
 fn count(stage: &Stage, welded: &Welded, bodies: &Bodies, flat: &[u32]) -> CasterCounts {
-    let is_cut = |&&i: &&u32| has_holes(stage, i as usize);
+    let is_cut = |&&i: &&u32| has_alpha_mask(stage, i as usize);
     let edges =
         |is_wanted: fn(usize) -> bool| (0..welded.edges.len()).filter(|&e| is_wanted(welded.uses_of(e).len())).count();
     let of_shape = |shape: Shape| bodies.shapes.iter().filter(|&&s| s == shape).count();
@@ -249,8 +249,11 @@ fn arrange(
             let old = order[next] as usize;
             let shape = bodies.shapes[bodies.of_triangle[old] as usize];
             // Through a hole one sees past the cap.
-            let drawn =
-                if has_holes(stage, flat[old] as usize) { Sides::default() } else { stage.sides(flat[old] as usize) };
+            let drawn = if has_alpha_mask(stage, flat[old] as usize) {
+                Sides::default()
+            } else {
+                stage.sides(flat[old] as usize)
+            };
             let is_turned = shape == Shape::InsideOut;
             sides.front &= if is_turned { drawn.back } else { drawn.front };
             sides.back &= if is_turned { drawn.front } else { drawn.back };
@@ -313,7 +316,7 @@ fn push_edge(
 }
 
 /// Whether a triangle's material cuts holes.
-fn has_holes(stage: &Stage, triangle: usize) -> bool {
+fn has_alpha_mask(stage: &Stage, triangle: usize) -> bool {
     matches!(stage.material(triangle).alpha, Alpha::Cut { .. })
 }
 

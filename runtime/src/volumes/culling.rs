@@ -17,7 +17,7 @@ use crate::stage::Stage;
 use glam::DVec3;
 
 /// A box with least and greatest coordinates, bake space.
-pub type Bounds = [DVec3; 2];
+pub type Aabb = [DVec3; 2];
 
 /// How much wider than the near rectangle its pyramid is taken to be: what a frame's own rounding can move.
 const PYRAMID_MARGIN: f64 = 4.0;
@@ -27,7 +27,7 @@ const MOVED_PX: f64 = 1.0 / 64.0;
 /// How far it may be moved along it besides, as a share of its distance.
 const MOVED_DEPTH: f64 = 4e-6;
 
-fn corners(bounds: &Bounds) -> [DVec3; 8] {
+fn corners(bounds: &Aabb) -> [DVec3; 8] {
     let pick = |i: usize, k: usize| bounds[i >> k & 1][k];
     std::array::from_fn(|i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
 }
@@ -71,13 +71,13 @@ impl Frustum {
     }
 
     /// Whether no part of a box is in view.
-    pub fn misses(&self, bounds: &Bounds) -> bool {
+    pub fn misses(&self, bounds: &Aabb) -> bool {
         let corners = corners(bounds);
         self.outwards.iter().any(|normal| corners.iter().all(|c| (*c - self.eye_m).dot(*normal) > 0.0))
     }
 
     /// Whether no part of what a box and its shadow fill is in view.
-    pub fn misses_volume(&self, bounds: &Bounds, light: &Light) -> bool {
+    pub fn misses_volume(&self, bounds: &Aabb, light: &Light) -> bool {
         let corners = corners(bounds);
         self.outwards.iter().any(|normal| {
             let is_out = |c: &DVec3| (*c - self.eye_m).dot(*normal) > 0.0;
@@ -86,7 +86,7 @@ impl Frustum {
     }
 
     /// Whether no part of the far end of a lamp's shadow is in view. An end that is not at infinity is never said to miss.
-    pub fn misses_far_end(&self, bounds: &Bounds, light: &Light) -> bool {
+    pub fn misses_far_end(&self, bounds: &Aabb, light: &Light) -> bool {
         if light.has_range() {
             return false;
         }
@@ -101,7 +101,7 @@ impl Frustum {
             Light::Sun { towards } => (*towards, f64::INFINITY),
             Light::Lamp { position_m, .. } => (*position_m - self.eye_m, 1.0),
         };
-        let meets = |[low, high]: &Bounds| {
+        let meets = |[low, high]: &Aabb| {
             let (mut enters, mut leaves) = (-reach_m / way.length().max(f64::MIN_POSITIVE), length);
             for k in 0..3 {
                 let [a, b] = [low[k] - reach_m - self.eye_m[k], high[k] + reach_m - self.eye_m[k]];
@@ -124,7 +124,7 @@ impl Frustum {
     }
 
     /// The pixels that a box can cover: left, top, width, height. None where it covers none.
-    fn pixels(&self, view: &View, bounds: &Bounds) -> Option<[u32; 4]> {
+    fn pixels(&self, view: &View, bounds: &Aabb) -> Option<[u32; 4]> {
         if self.misses(bounds) {
             return None;
         }
@@ -159,7 +159,7 @@ fn goes_along(corners: &[DVec3; 8], light: &Light, normal: DVec3) -> bool {
 /// Boxes around what is drawn, an instance each.
 #[derive(Debug, Clone)]
 pub struct Receivers {
-    bounds: Vec<Bounds>,
+    bounds: Vec<Aabb>,
 }
 
 impl Receivers {
@@ -177,14 +177,14 @@ impl Receivers {
     }
 
     /// Those that are in view and in the light's range.
-    pub fn in_view(&self, frustum: &Frustum, light: &Light) -> Vec<Bounds> {
-        let in_range = |bounds: &&Bounds| range_box(light).is_none_or(|range| overlap(&range, bounds));
+    pub fn in_view(&self, frustum: &Frustum, light: &Light) -> Vec<Aabb> {
+        let in_range = |bounds: &&Aabb| range_box(light).is_none_or(|range| overlap(&range, bounds));
         self.bounds.iter().filter(|bounds| !frustum.misses(bounds)).filter(in_range).copied().collect()
     }
 }
 
 /// The box around all that a light reaches, if it has a range.
-fn range_box(light: &Light) -> Option<Bounds> {
+fn range_box(light: &Light) -> Option<Aabb> {
     match light {
         Light::Lamp { position_m, range_m: Some(range_m) } => Some([*position_m - *range_m, *position_m + *range_m]),
         _ => None,
@@ -192,28 +192,28 @@ fn range_box(light: &Light) -> Option<Bounds> {
 }
 
 /// Whether a caster is where a light reaches.
-pub fn is_in_range(bounds: &Bounds, light: &Light) -> bool {
+pub fn is_in_range(bounds: &Aabb, light: &Light) -> bool {
     range_box(light).is_none_or(|range| overlap(&range, bounds))
 }
 
-fn overlap(a: &Bounds, b: &Bounds) -> bool {
+fn overlap(a: &Aabb, b: &Aabb) -> bool {
     a[0].cmple(b[1]).all() && b[0].cmple(a[1]).all()
 }
 
 /// Receivers as a light sees them: which of them a caster's shadow can fall on.
 pub struct Targets {
     /// In bake space.
-    bounds: Vec<Bounds>,
+    bounds: Vec<Aabb>,
     /// Along two axes across the sun's rays, and along them towards the sun. Empty for lamps.
-    seen: Vec<Bounds>,
+    seen: Vec<Aabb>,
 }
 
 impl Targets {
     /// Receivers in view, as a light sees them.
-    pub fn new(bounds: Vec<Bounds>, frustum: &Frustum, light: &Light) -> Self {
+    pub fn new(bounds: Vec<Aabb>, frustum: &Frustum, light: &Light) -> Self {
         let seen = match light {
             Light::Sun { towards } => {
-                let grown = |bounds: &Bounds| {
+                let grown = |bounds: &Aabb| {
                     let furthest_m = corners(bounds).map(|c| c.distance(frustum.eye_m)).into_iter().fold(0.0, f64::max);
                     let growth_m = frustum.moved_share * furthest_m;
                     seen_from_sun(&[bounds[0] - growth_m, bounds[1] + growth_m], *towards)
@@ -262,7 +262,7 @@ impl Targets {
 }
 
 /// A box as the sun sees it, and grown by what its own rounding may have taken.
-fn seen_from_sun(bounds: &Bounds, towards: DVec3) -> Bounds {
+fn seen_from_sun(bounds: &Aabb, towards: DVec3) -> Aabb {
     let (right, up) = towards.any_orthonormal_pair();
     let seen = corners(bounds).map(|c| DVec3::new(c.dot(right), c.dot(up), c.dot(towards)));
     let (low, high) = (seen.iter().fold(seen[0], |a, b| a.min(*b)), seen.iter().fold(seen[0], |a, b| a.max(*b)));
@@ -270,8 +270,8 @@ fn seen_from_sun(bounds: &Bounds, towards: DVec3) -> Bounds {
     [low - growth_m, high + growth_m]
 }
 
-/// Whether a box lies on or before the plane of a flat caster, on the light's side, where it throws no shadow.
-fn is_before_plane(caster: &Caster, bounds: &Bounds, light: &Light) -> bool {
+/// Whether a box lies on or before the plane of a flat caster, on the light's side, where it extrudes no shadow.
+fn is_before_plane(caster: &Caster, bounds: &Aabb, light: &Light) -> bool {
     let Some((normal, offset_m)) = caster.plane else { return false };
     let side = match light {
         Light::Sun { towards } => towards.dot(normal),

@@ -19,14 +19,14 @@ const SAMPLE: usize = 63;
 const GROWTH: f32 = 2e-6;
 
 /// A box with least and greatest coordinates.
-type Bounds = [Vec3; 2];
+type CellBounds = [Vec3; 2];
 
 /// All triangles as the light sees them.
 struct Seen {
     view: LightView,
     corners: Vec<[Vec3; 3]>,
     /// Boxes; empty where a triangle casts nothing.
-    bounds: Vec<Bounds>,
+    bounds: Vec<CellBounds>,
 }
 
 /// Cuts the casting triangles into as few runs as it easily can, none of which has more than `most` prisms over one spot.
@@ -59,7 +59,7 @@ impl Seen {
 
     /// Where to cut a cell: at the median of the middles of what reaches into it, as far as it does, by a sample. Where a scene
     /// is dense cells are small, and a wide plain costs no cuts.
-    fn middle(&self, of: &[u32], cell: &Bounds, axis: usize) -> f32 {
+    fn middle(&self, of: &[u32], cell: &CellBounds, axis: usize) -> f32 {
         let middle = |&i: &u32| {
             let [low, high] = &self.bounds[i as usize];
             0.5 * (low[axis].max(cell[0][axis]) + high[axis].min(cell[1][axis]))
@@ -71,7 +71,7 @@ impl Seen {
 
     /// Whether more than `most` of these triangles, all of which reach into a cell, may reach into some part of it as small
     /// as cells get.
-    fn exceeds(&self, of: &[u32], cell: Bounds, most: usize, depth: u32) -> bool {
+    fn exceeds(&self, of: &[u32], cell: CellBounds, most: usize, depth: u32) -> bool {
         if of.len() <= most || !self.view.has_spots_in(&cell) {
             return false;
         }
@@ -130,7 +130,7 @@ impl LightView {
     }
 
     /// All that is seen. A plane has no depth to be halved.
-    fn space(&self) -> Bounds {
+    fn space(&self) -> CellBounds {
         let half = match self {
             Self::Plane { .. } => Vec3::new(2.0, 2.0, 0.0),
             Self::Sphere { .. } => Vec3::splat(2.0),
@@ -139,7 +139,7 @@ impl LightView {
     }
 
     /// Whether a cell holds anything that is seen: of the cube around a lamp, only the sphere.
-    fn has_spots_in(&self, [low, high]: &Bounds) -> bool {
+    fn has_spots_in(&self, [low, high]: &CellBounds) -> bool {
         match self {
             Self::Plane { .. } => true,
             Self::Sphere { .. } => {
@@ -151,7 +151,7 @@ impl LightView {
     }
 
     /// A triangle, and its box.
-    fn see(&self, corners: &[DVec3; 3]) -> ([Vec3; 3], Bounds) {
+    fn see(&self, corners: &[DVec3; 3]) -> ([Vec3; 3], CellBounds) {
         match self {
             Self::Plane { across, middle_m, per_metre } => {
                 let seen = corners.map(|corner| {
@@ -175,7 +175,7 @@ impl LightView {
     }
 
     /// Whether a triangle may reach into a cell: the cell is not beyond any of its edges.
-    fn reaches(&self, corners: &[Vec3; 3], [low, high]: &Bounds) -> bool {
+    fn reaches(&self, corners: &[Vec3; 3], [low, high]: &CellBounds) -> bool {
         (0..3).all(|k| {
             let [a, b, c] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
             let normal = match self {

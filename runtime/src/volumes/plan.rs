@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// How a caster's volume is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Draw {
+pub enum StencilMethod {
     /// Faces before the surface, without the casters' own caps: cheaper, and wrong where the eye is in the volume or such a
     /// cap shows.
     ZPass {
@@ -28,7 +28,7 @@ pub enum Draw {
     },
 }
 
-impl Draw {
+impl StencilMethod {
     /// Whether it takes a part of the volume.
     fn has(self, part: Part) -> bool {
         match (self, part) {
@@ -45,7 +45,7 @@ impl Draw {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FramePlan {
     /// For each caster, how; none where it is left out.
-    pub draws: Vec<Option<Draw>>,
+    pub draws: Vec<Option<StencilMethod>>,
     /// Pixels outside of which nothing is drawn: left, top, width, height.
     pub scissor: [u32; 4],
     /// What was decided, counted.
@@ -94,8 +94,8 @@ impl FramePlan {
                 Choice::CastingNothing => counts.casting_nothing += 1,
                 Choice::OutOfView => counts.out_of_view += 1,
                 Choice::ShadingNothing => counts.shading_nothing += 1,
-                Choice::Drawn(Draw::ZPass { .. }, _) => counts.z_pass += 1,
-                Choice::Drawn(Draw::ZFail { caps, .. }, is_replaced) => {
+                Choice::Drawn(StencilMethod::ZPass { .. }, _) => counts.z_pass += 1,
+                Choice::Drawn(StencilMethod::ZFail { caps, .. }, is_replaced) => {
                     counts.z_fail += 1;
                     counts.without_caps += usize::from(!caps);
                     counts.replaced += usize::from(*is_replaced);
@@ -128,7 +128,8 @@ impl FramePlan {
             _ => ranges.push(range),
         };
         for (caster, (draw, parts)) in self.draws.iter().zip(all).enumerate() {
-            let Some(draw) = draw.filter(|draw| matches!(draw, Draw::ZPass { .. }) == is_z_pass && is_wanted(caster))
+            let Some(draw) =
+                draw.filter(|draw| matches!(draw, StencilMethod::ZPass { .. }) == is_z_pass && is_wanted(caster))
             else {
                 continue;
             };
@@ -148,7 +149,7 @@ enum Choice {
     OutOfView,
     ShadingNothing,
     /// And whether z-pass was asked for in vain.
-    Drawn(Draw, bool),
+    Drawn(StencilMethod, bool),
 }
 
 struct Chooser<'a> {
@@ -180,11 +181,11 @@ impl Chooser<'_> {
             Mode::Planned | Mode::Gpu => self.savings.z_pass,
         };
         if wants_z_pass && self.is_right_before(index) {
-            return Choice::Drawn(Draw::ZPass { dark_caps: self.light.has_range() }, false);
+            return Choice::Drawn(StencilMethod::ZPass { dark_caps: self.light.has_range() }, false);
         }
         let caps = !self.savings.cap_culling || !self.frustum.misses(&caster.bounds_m);
         let dark_caps = !self.savings.cap_culling || !self.frustum.misses_far_end(&caster.bounds_m, self.light);
-        Choice::Drawn(Draw::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
+        Choice::Drawn(StencilMethod::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
     }
 
     /// Whether a caster may be counted before the surface without its caps: every cap is hidden by the surface that it lies

@@ -1,4 +1,4 @@
-//! Volumes from casters: the boundary of the prisms that the light throws from triangles.
+//! Volumes from casters: the boundary of the prisms that the light extrudes from triangles.
 //!
 //! A triangle that blocks the light shades a prism without end: the triangle is its *cap*, and from each of its edges a
 //! *wall* leads away from the light. Where two prisms meet in a wall, one says +1 and the other -1, and the wall is not
@@ -12,13 +12,13 @@
 //! with. A lamp's are quads, and end in *dark caps*.
 //!
 //! Corners are indices: below the number of points, a point; from there on, for the sun, the point where its rays meet,
-//! and for a lamp each point thrown away from it.
+//! and for a lamp each point extruded away from it.
 
 use super::casters::{Caster, Casters};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What is thrown from an edge.
+/// What is extruded from an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extrusion {
     /// Walls that meet in a point.

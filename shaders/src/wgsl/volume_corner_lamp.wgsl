@@ -1,4 +1,4 @@
-// A corner of a volume: one of the points or, beyond them, one of them thrown away from the lamp to infinity.
+// A corner of a volume: one of the points or, beyond them, one of them extruded away from the lamp to infinity.
 fn corner(index: u32) -> vec4<f32> {
     let count = point_count();
     if index < count {

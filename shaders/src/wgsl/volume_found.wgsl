@@ -41,15 +41,15 @@ fn wall_vertex(
     return corner(wall_corner(wall, index % WALL_CORNERS, times > 0));
 }
 
-// A corner of the cap that lies at a triangle (`thrown` 0), or at what is thrown from it and looks the other way (1).
-fn cap_corner(index: u32, thrown: u32) -> vec4<f32> {
+// A corner of the cap that lies at a triangle (`extruded` 0), or at what is extruded from it and looks the other way (1).
+fn cap_corner(index: u32, extruded: u32) -> vec4<f32> {
     let facing = face(index / 3u);
     if facing == 0 {
         return NOWHERE;
     }
     let k = index % 3u;
-    let is_turned = (facing < 0) != (thrown == 1u);
-    return corner(thrown * point_count() + triangles[index - k + select(k, (3u - k) % 3u, is_turned)]);
+    let is_turned = (facing < 0) != (extruded == 1u);
+    return corner(extruded * point_count() + triangles[index - k + select(k, (3u - k) % 3u, is_turned)]);
 }
 
 @vertex

@@ -2,11 +2,11 @@ const WALL_CORNERS: u32 = 6u;
 
 // The corners of a wall in the order of `silhouettes.rs`.
 fn wall_corner(wall: Wall, k: u32, is_along: bool) -> u32 {
-    let thrown = point_count();
-    let low_thrown = thrown + wall.low;
-    let high_thrown = thrown + wall.high;
-    var along = array<u32, 6>(wall.high, wall.low, low_thrown, wall.high, low_thrown, high_thrown);
-    var against = array<u32, 6>(wall.high, low_thrown, wall.low, wall.high, high_thrown, low_thrown);
+    let extruded = point_count();
+    let low_extruded = extruded + wall.low;
+    let high_extruded = extruded + wall.high;
+    var along = array<u32, 6>(wall.high, wall.low, low_extruded, wall.high, low_extruded, high_extruded);
+    var against = array<u32, 6>(wall.high, low_extruded, wall.low, wall.high, high_extruded, low_extruded);
     return select(against[k], along[k], is_along);
 }
 

@@ -44,7 +44,7 @@ pub fn bake_and_check(scene: &Scene, settings: &AtlasSettings) -> Baked {
 }
 
 impl Baked {
-    /// Corners of every triangle on its page, in texels: page, instance, flat index, corners.
+    /// TexelTriangle of every triangle on its page, in texels: page, instance, flat index, corners.
     pub fn triangles<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (usize, usize, u32, [DVec2; 3])> + 'a {
         let drawn = (0..scene.instances.len()).filter(|&i| !self.atlas.placements[i].is_empty());
         drawn.flat_map(move |instance| {

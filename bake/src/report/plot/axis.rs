@@ -4,7 +4,7 @@ use super::super::number::plain;
 
 /// Pixels at the lower end of a logarithmic axis that are kept for what is zero or less, where there is any.
 const ZERO_BAND: f64 = 34.0;
-/// Free room beyond the outermost values, as a share of the axis.
+/// Free rect beyond the outermost values, as a share of the axis.
 const ROOM: f64 = 0.07;
 /// About how many values are written beside an axis.
 const TICKS: f64 = 6.0;
@@ -23,7 +23,7 @@ pub(super) struct Scale {
 
 /// Where a value lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct AxisPosition {
     pub pixel: f64,
     /// Whether that is the band for zero and less.
     pub is_zero: bool,
@@ -42,16 +42,16 @@ impl Scale {
     }
 
     /// Where a value lies; nowhere if it is no finite number.
-    pub fn place(&self, value: f64) -> Option<Place> {
+    pub fn place(&self, value: f64) -> Option<AxisPosition> {
         if !value.is_finite() {
             return None;
         }
         if self.is_log && value <= 0.0 {
-            return self.zero_pixel.map(|pixel| Place { pixel, is_zero: true });
+            return self.zero_pixel.map(|pixel| AxisPosition { pixel, is_zero: true });
         }
         let at = if self.is_log { value.log10() } else { value };
         let share = (at - self.ends[0]) / (self.ends[1] - self.ends[0]);
-        Some(Place { pixel: self.pixels[0] + share * (self.pixels[1] - self.pixels[0]), is_zero: false })
+        Some(AxisPosition { pixel: self.pixels[0] + share * (self.pixels[1] - self.pixels[0]), is_zero: false })
     }
 
     /// Values to be written beside the axis, with their pixels.
@@ -86,8 +86,8 @@ fn log_ends(values: &[f64]) -> [f64; 2] {
         return [-1.0, 1.0];
     }
     // At least a factor of two, so that noise does not look like a mountain range.
-    let room = (ROOM * (high - low)).max(0.15);
-    [low - room, high + room]
+    let rect = (ROOM * (high - low)).max(0.15);
+    [low - rect, high + rect]
 }
 
 /// The ends, zero among them.
@@ -98,8 +98,8 @@ fn linear_ends(values: &[f64]) -> [f64; 2] {
         return [0.0, 1.0];
     }
     // Halves first: the whole may be too large for a number.
-    let room = 2.0 * ROOM * (0.5 * high - 0.5 * low);
-    [if low < 0.0 { low - room } else { 0.0 }, (high + room).min(f64::MAX)]
+    let rect = 2.0 * ROOM * (0.5 * high - 0.5 * low);
+    [if low < 0.0 { low - rect } else { 0.0 }, (high + rect).min(f64::MAX)]
 }
 
 /// Even steps of 1, 2 or 5 times a power of ten.

@@ -1,7 +1,7 @@
 //! A plot drawn with plotters, on white: a page may be dark, and ink is chosen for paper.
 
-use super::axis::{Place, Scale};
-use super::labels::{self, Seat};
+use super::axis::{AxisPosition, Scale};
+use super::labels::{self, LabelAnchor};
 use super::{Plot, Point, SIZE, Series};
 use crate::report::{escape, plain};
 use plotters::coord::Shift;
@@ -57,7 +57,7 @@ struct Spot {
 
 impl Frame {
     fn spot(&self, point: &Point) -> Option<Spot> {
-        let (x, y): (Place, Place) = (self.x.place(point.x)?, self.y.place(point.y)?);
+        let (x, y): (AxisPosition, AxisPosition) = (self.x.place(point.x)?, self.y.place(point.y)?);
         Some(Spot { at: (x.pixel.round() as i32, y.pixel.round() as i32), is_hollow: x.is_zero || y.is_zero })
     }
 }
@@ -137,7 +137,7 @@ fn dot(spot: Spot, area: &Area, color: RGBColor) -> Drawn {
     Ok(())
 }
 
-/// Names beside their points; the mark's first, since it must not be the one without room.
+/// Names beside their points; the mark's first, since it must not be the one without rect.
 fn names(plot: &Plot, frame: &Frame, area: &Area) -> Drawn {
     let of_series = plot.series.iter().enumerate();
     let named =
@@ -151,9 +151,9 @@ fn names(plot: &Plot, frame: &Frame, area: &Area) -> Drawn {
     let ([left, right], [foot, head]) = (across(), upwards());
     let lines: Vec<_> =
         plot.series.iter().filter(|series| series.is_joined).flat_map(|series| along(series, frame)).collect();
-    let seats = labels::seats(&points, &lines, SMALL, [left + 2.0, head - 14.0, right + 22.0, foot - 2.0]);
-    for ((_, point, color), seat) in placed.iter().zip(seats) {
-        let Some(Seat { left, middle }) = seat else { continue };
+    let anchors = labels::anchors(&points, &lines, SMALL, [left + 2.0, head - 14.0, right + 22.0, foot - 2.0]);
+    for ((_, point, color), anchor) in placed.iter().zip(anchors) {
+        let Some(LabelAnchor { left, middle }) = anchor else { continue };
         write(area, &point.label, (left.round() as i32, middle.round() as i32), SMALL, &darker(*color), HPos::Left)?;
     }
     Ok(())

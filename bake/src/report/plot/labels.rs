@@ -1,4 +1,4 @@
-//! Where the names of points are written: beside each, without covering another name or point; nowhere if there is no room.
+//! Where the names of points are written: beside each, without covering another name or point; nowhere if there is no rect.
 //!
 //! Greedy: points come in their order, and each takes the first of eight places that is free and on no line; or else the
 //! first that is free.
@@ -9,11 +9,11 @@ const GAP: f64 = 9.0;
 const POINT: f64 = 5.0;
 
 /// A rectangle: least x and y, greatest x and y, in pixels.
-pub(super) type Room = [f64; 4];
+pub(super) type LabelRect = [f64; 4];
 
 /// Where a name starts (its left end) and where its middle line is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Seat {
+pub(super) struct LabelAnchor {
     pub left: f64,
     pub middle: f64,
 }
@@ -23,24 +23,30 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
 }
 
-/// A seat for the name of each point, if there is one within the frame; `lines` are pixels that lines pass.
-pub(super) fn seats(points: &[([f64; 2], &str)], lines: &[[f64; 2]], size: f64, frame: Room) -> Vec<Option<Seat>> {
-    let mut taken: Vec<Room> = points.iter().map(|([x, y], _)| [x - POINT, y - POINT, x + POINT, y + POINT]).collect();
-    let mut seat = |&([x, y], text): &([f64; 2], &str)| {
+/// A anchor for the name of each point, if there is one within the frame; `lines` are pixels that lines pass.
+pub(super) fn anchors(
+    points: &[([f64; 2], &str)],
+    lines: &[[f64; 2]],
+    size: f64,
+    frame: LabelRect,
+) -> Vec<Option<LabelAnchor>> {
+    let mut taken: Vec<LabelRect> =
+        points.iter().map(|([x, y], _)| [x - POINT, y - POINT, x + POINT, y + POINT]).collect();
+    let mut anchor = |&([x, y], text): &([f64; 2], &str)| {
         let (wide, half) = (width(text, size), 0.6 * size);
-        let rooms = around(x, y, wide).map(|seat| (seat, room(&seat, wide, half)));
-        let is_free = |room: &Room| within(room, &frame) && !taken.iter().any(|other| overlap(room, other));
-        let is_clear = |room: &Room| !lines.iter().any(|[x, y]| overlap(room, &[*x, *y, *x, *y]));
-        let free = || rooms.into_iter().filter(|(_, room)| is_free(room));
-        let (seat, room) = free().find(|(_, room)| is_clear(room)).or_else(|| free().next())?;
-        taken.push(room);
-        Some(seat)
+        let rects = around(x, y, wide).map(|anchor| (anchor, rect(&anchor, wide, half)));
+        let is_free = |rect: &LabelRect| within(rect, &frame) && !taken.iter().any(|other| overlap(rect, other));
+        let is_clear = |rect: &LabelRect| !lines.iter().any(|[x, y]| overlap(rect, &[*x, *y, *x, *y]));
+        let free = || rects.into_iter().filter(|(_, rect)| is_free(rect));
+        let (anchor, rect) = free().find(|(_, rect)| is_clear(rect)).or_else(|| free().next())?;
+        taken.push(rect);
+        Some(anchor)
     };
-    points.iter().map(|point| if point.1.is_empty() { None } else { seat(point) }).collect()
+    points.iter().map(|point| if point.1.is_empty() { None } else { anchor(point) }).collect()
 }
 
 /// The places about a point, best first: curves of error against time fall to the right, so that up and right is free.
-fn around(x: f64, y: f64, wide: f64) -> [Seat; 8] {
+fn around(x: f64, y: f64, wide: f64) -> [LabelAnchor; 8] {
     let (right, left, middle) = (x + GAP, x - GAP - wide, x - 0.5 * wide);
     let (above, below) = (y - 1.5 * GAP, y + 1.5 * GAP);
     let near = 0.6 * GAP;
@@ -54,18 +60,18 @@ fn around(x: f64, y: f64, wide: f64) -> [Seat; 8] {
         (x - near - wide, y - 1.2 * GAP),
         (x + near, y + 1.2 * GAP),
     ]
-    .map(|(left, middle)| Seat { left, middle })
+    .map(|(left, middle)| LabelAnchor { left, middle })
 }
 
-fn room(seat: &Seat, wide: f64, half: f64) -> Room {
-    [seat.left, seat.middle - half, seat.left + wide, seat.middle + half]
+fn rect(anchor: &LabelAnchor, wide: f64, half: f64) -> LabelRect {
+    [anchor.left, anchor.middle - half, anchor.left + wide, anchor.middle + half]
 }
 
-fn overlap(a: &Room, b: &Room) -> bool {
+fn overlap(a: &LabelRect, b: &LabelRect) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
-fn within(a: &Room, frame: &Room) -> bool {
+fn within(a: &LabelRect, frame: &LabelRect) -> bool {
     a[0] >= frame[0] && a[1] >= frame[1] && a[2] <= frame[2] && a[3] <= frame[3]
 }
 
@@ -81,18 +87,19 @@ mod tests {
         let places: Vec<[f64; 2]> =
             (0..60).map(|_| [300.0 * pseudo_random(&mut state), 200.0 * pseudo_random(&mut state)]).collect();
         let points: Vec<([f64; 2], &str)> = places.iter().map(|&at| (at, "rays:16")).collect();
-        let seats = seats(&points, &[], 12.0, frame);
-        let rooms: Vec<Room> = seats.iter().flatten().map(|seat| room(seat, width("rays:16", 12.0), 7.2)).collect();
-        assert!(rooms.len() > 10, "{}", rooms.len());
-        for (k, a) in rooms.iter().enumerate() {
-            assert!(within(a, &frame) && rooms[..k].iter().all(|b| !overlap(a, b)));
+        let anchors = anchors(&points, &[], 12.0, frame);
+        let rects: Vec<LabelRect> =
+            anchors.iter().flatten().map(|anchor| rect(anchor, width("rays:16", 12.0), 7.2)).collect();
+        assert!(rects.len() > 10, "{}", rects.len());
+        for (k, a) in rects.iter().enumerate() {
+            assert!(within(a, &frame) && rects[..k].iter().all(|b| !overlap(a, b)));
             assert!(places.iter().all(|[x, y]| !overlap(a, &[*x, *y, *x, *y])));
         }
     }
 
     #[test]
     fn a_lone_point_has_its_name() {
-        assert!(seats(&[([50.0, 50.0], "one")], &[], 12.0, [0.0, 0.0, 100.0, 100.0])[0].is_some());
-        assert_eq!(seats(&[], &[], 12.0, [0.0; 4]), []);
+        assert!(anchors(&[([50.0, 50.0], "one")], &[], 12.0, [0.0, 0.0, 100.0, 100.0])[0].is_some());
+        assert_eq!(anchors(&[], &[], 12.0, [0.0; 4]), []);
     }
 }

@@ -63,7 +63,7 @@ pub struct Point {
     pub x: f64,
     /// Upwards.
     pub y: f64,
-    /// Its name, shown where there is room, and when a pointer rests on it.
+    /// Its name, shown where there is rect, and when a pointer rests on it.
     pub label: String,
 }
 

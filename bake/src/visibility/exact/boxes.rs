@@ -16,7 +16,7 @@
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use crate::trace::wide::{Leaf, Node, Points, first_lanes};
+use crate::trace::bvh16::{Leaf, Node, Points, first_lanes};
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;

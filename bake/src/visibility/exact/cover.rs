@@ -1,14 +1,14 @@
 //! Closing a query's gaps with triangles, eight at a time.
 
+use super::alpha_mask::Pierced;
 use super::arc::ArcFrame;
 use super::follow::{Follower, Solid};
 use super::gaps::Gaps;
-use super::holes::Pierced;
 use super::near::hidden_near;
 use super::seeds::Seeds;
 use super::solve::{Hidden, Packet, hide};
 use crate::trace::Tracer;
-use crate::trace::wide::bits;
+use crate::trace::bvh16::bits;
 use fearless_simd::Simd;
 use glam::DVec3;
 
@@ -92,7 +92,7 @@ impl<'a> Coverer<'a> {
                 let hidden = &self.hidden[lane];
                 let closes = match hidden.whole(slot) {
                     Some([start, end]) if start >= end => false,
-                    Some(span) if !self.tracer.has_holes(ids[slot]) => query.gaps[lane].close(span),
+                    Some(span) if !self.tracer.has_alpha_mask(ids[slot]) => query.gaps[lane].close(span),
                     _ => self.close_pieces(packet, [slot, lane], &self.hidden[lane].pieces(slot), query),
                 };
                 useful |= u32::from(closes) << slot;
@@ -111,7 +111,7 @@ impl<'a> Coverer<'a> {
             self.follower.clear();
         }
         for slot in bits(useful) {
-            let kind = usize::from(self.tracer.has_holes(ids[slot]));
+            let kind = usize::from(self.tracer.has_alpha_mask(ids[slot]));
             self.next_seeds[kind].add(ids[slot], packet.corners_of(slot));
         }
         useful != 0

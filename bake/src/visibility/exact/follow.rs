@@ -5,7 +5,7 @@
 //! follows in a step of no length. A step waits for the one before it, through a root and two quotients, so a few curves
 //! take turns: their steps overlap in the processor.
 
-use super::holes::{Curve, Pierced, texel_of, value};
+use super::alpha_mask::{Curve, Pierced, texel_of, value};
 
 /// Curves that take turns.
 const COURSES: usize = 4;

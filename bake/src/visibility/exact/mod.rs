@@ -8,7 +8,7 @@
 //!
 //! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
 //! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then a
-//! sixteen-wide hierarchy (`wide.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that no sun still lit
+//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that no sun still lit
 //! can meet: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`). Triangles that pass are collected and
 //! solved eight at a time in `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones
 //! for its cone. Across triangles with holes the sun is followed from texel to texel (`holes.rs`, `follow.rs`), triangles
@@ -57,12 +57,12 @@
 //! close a slit that has opened between two points); what a large occluder hides from a whole block; leaf cards cut to their
 //! outlines when they are loaded.
 
+mod alpha_mask;
 mod arc;
 mod boxes;
 mod cover;
 mod follow;
 mod gaps;
-mod holes;
 mod near;
 mod seeds;
 mod solve;
@@ -72,7 +72,7 @@ use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
-use crate::trace::wide::Wide;
+use crate::trace::bvh16::Bvh16;
 use arc::ArcFrame;
 use boxes::Frames;
 use cover::{Coverer, Query};
@@ -87,7 +87,7 @@ const BOX_PADDING: f32 = 1.0 / 256.0;
 /// Lit intervals in closed form.
 pub struct ExactEngine<'a> {
     tracer: &'a Tracer,
-    wide: Wide,
+    bvh: Bvh16,
     arcs: Vec<Arc>,
     lane_count: usize,
     level: Level,
@@ -105,10 +105,10 @@ impl<'a> ExactEngine<'a> {
         let axes = frames.first().map_or(DMat3::IDENTITY, |frame| frame.arc_from_bake);
         // Rays start a run-up behind their point, which may be far where a file's coordinates are coarse.
         let padding = BOX_PADDING + tracer.run_up() as f32;
-        let wide = Wide::new(tracer, axes, padding);
+        let bvh = Bvh16::new(tracer, axes, padding);
         let arc = |frame| Arc { frames: Frames::new(&frame, axes, padding), frame };
         let arcs = frames.into_iter().map(arc).collect();
-        Self { tracer, wide, arcs, lane_count: lanes.len(), level: Level::new() }
+        Self { tracer, bvh, arcs, lane_count: lanes.len(), level: Level::new() }
     }
 }
 
@@ -124,7 +124,7 @@ impl Engine for ExactEngine<'_> {
     fn session(&self) -> Box<dyn Session + '_> {
         let coverer = |arc| Coverer::new(self.tracer, arc);
         let coverers = self.arcs.iter().map(|arc| [coverer(&arc.frame), coverer(&arc.frame)]).collect();
-        Box::new(ExactSession { engine: self, coverers, room: Room::default() })
+        Box::new(ExactSession { engine: self, coverers, scratch: Scratch::default() })
     }
 }
 
@@ -132,12 +132,12 @@ struct ExactSession<'a> {
     engine: &'a ExactEngine<'a>,
     /// For each arc, one for each side of a surface: seeds of the front are not those of the back.
     coverers: Vec<[Coverer<'a>; 2]>,
-    room: Room,
+    scratch: Scratch,
 }
 
 /// What is used anew by every point.
 #[derive(Default)]
-struct Room {
+struct Scratch {
     walk: Walk,
     query: Query,
     /// For each lane, when the point sees the sun.
@@ -151,18 +151,18 @@ impl Session for ExactSession<'_> {
     }
 
     fn work(&self) -> Work {
-        self.room.walk.work
+        self.scratch.walk.work
     }
 }
 
 impl ExactSession<'_> {
     fn lit_with<S: Simd>(&mut self, simd: S, points: &[SurfacePoint], answers: &mut IntervalTable) {
-        self.room.lit.resize_with(self.engine.lane_count, Vec::new);
+        self.scratch.lit.resize_with(self.engine.lane_count, Vec::new);
         for point in points {
             for arc in 0..self.engine.arcs.len() {
                 (0..=usize::from(point.is_double_sided)).for_each(|side| self.light(simd, arc, side, point));
             }
-            for times in &mut self.room.lit {
+            for times in &mut self.scratch.lit {
                 answers.push(&Intervals::from_unsorted(std::mem::take(times)));
             }
         }
@@ -170,16 +170,16 @@ impl ExactSession<'_> {
 
     /// Finds the light of one arc on one side of a point.
     fn light<S: Simd>(&mut self, simd: S, arc: usize, side: usize, point: &SurfacePoint) {
-        let Self { engine, coverers, room: Room { walk, query, lit } } = self;
+        let Self { engine, coverers, scratch: Scratch { walk, query, lit } } = self;
         let Arc { frame, frames } = &engine.arcs[arc];
         if !engine.open(frame, point, side, query) {
             return;
         }
-        if !engine.wide.nodes.is_empty() {
+        if !engine.bvh.nodes.is_empty() {
             let coverer = &mut coverers[arc][side];
             walk.work.triangles += coverer.close_with_seeds(simd, query);
             if !query.is_done() {
-                walk.close(simd, &engine.wide, frames, coverer, query);
+                walk.close(simd, &engine.bvh, frames, coverer, query);
             }
         }
         for (gaps, times) in query.gaps.iter().zip(lit) {

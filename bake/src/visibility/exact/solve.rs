@@ -21,13 +21,13 @@ use smallvec::SmallVec;
 /// Triangles solved at once.
 pub(super) const LANES: usize = 8;
 
-/// Corners of eight triangles: by corner, axis and triangle.
-pub(super) type Corners = [[[f64; LANES]; 3]; 3];
+/// CornerLanes of eight triangles: by corner, axis and triangle.
+pub(super) type CornerLanes = [[[f64; LANES]; 3]; 3];
 
 /// Up to eight triangles, corners in the arc's frame.
 #[derive(Default, Clone)]
 pub(super) struct Packet {
-    pub corners: Corners,
+    pub corners: CornerLanes,
     pub ids: [u32; LANES],
     pub count: usize,
 }
@@ -154,7 +154,7 @@ fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
 /// triangles whose plane is within the run-up (given squared), of which the rest of the answer is not to be believed.
 pub(super) fn hide<S: Simd>(
     simd: S,
-    corners: &Corners,
+    corners: &CornerLanes,
     origin: DVec3,
     run_up2: f64,
     lanes: &[Declination],
@@ -180,7 +180,7 @@ struct Edges<S: Simd> {
 }
 
 #[inline(always)]
-fn edges<S: Simd>(simd: S, corners: &Corners, origin: DVec3, run_up2: f64) -> Edges<S> {
+fn edges<S: Simd>(simd: S, corners: &CornerLanes, origin: DVec3, run_up2: f64) -> Edges<S> {
     let a = relative(simd, &corners[0], origin);
     let b = relative(simd, &corners[1], origin);
     let c = relative(simd, &corners[2], origin);

@@ -3,7 +3,7 @@
 use super::boxes::{Frames, Wanted, leaf_met, node_met};
 use super::cover::{Coverer, Query};
 use super::solve::{LANES, Packet};
-use crate::trace::wide::{Child, WIDTH, Wide, bits, push_far_first};
+use crate::trace::bvh16::{Bvh16, Child, WIDTH, bits, push_far_first};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
@@ -27,7 +27,7 @@ pub(super) struct Walk {
 
 impl Walk {
     /// Closes the query's gaps with whatever lies in the hierarchy. Stops when there is none.
-    pub fn close<S: Simd>(&mut self, simd: S, wide: &Wide, frames: &Frames, coverer: &mut Coverer, query: &mut Query) {
+    pub fn close<S: Simd>(&mut self, simd: S, bvh: &Bvh16, frames: &Frames, coverer: &mut Coverer, query: &mut Query) {
         self.wanted.look_from(frames, query);
         self.collected.iter_mut().for_each(|packet| packet.count = 0);
         self.stack.clear();
@@ -37,7 +37,7 @@ impl Walk {
             self.work.nodes += 1;
             match pending.child {
                 Child::Node(node) => {
-                    let node = &wide.nodes[node as usize];
+                    let node = &bvh.nodes[node as usize];
                     let first = self.stack.len();
                     for lane in bits(node_met(simd, node, &self.wanted, &mut near2)) {
                         let pending = Pending { child: node.child[lane], near2: near2[lane] };
@@ -45,7 +45,7 @@ impl Walk {
                     }
                 }
                 Child::Leaf(leaf) => {
-                    let leaf = &wide.leaves[leaf as usize];
+                    let leaf = &bvh.leaves[leaf as usize];
                     for lane in bits(leaf_met(simd, leaf, &self.wanted)) {
                         self.take(simd, leaf.ids[lane], coverer, query);
                     }
@@ -64,7 +64,7 @@ impl Walk {
     #[inline]
     fn take<S: Simd>(&mut self, simd: S, id: u32, coverer: &mut Coverer, query: &mut Query) {
         self.work.triangles += 1;
-        let packet = &mut self.collected[usize::from(coverer.tracer.has_holes(id))];
+        let packet = &mut self.collected[usize::from(coverer.tracer.has_alpha_mask(id))];
         packet.push_unturned(id, &coverer.tracer.corners()[id as usize]);
         if packet.count == LANES {
             let closed = coverer.turn_and_close(simd, packet, query);

@@ -9,8 +9,8 @@
 //! A lamp has no horizon. The surface's plane is a gate that is linear in s too; a double-sided surface is asked from
 //! whichever side the lamp is on. [`LampRays`] asks evenly spaced places of the lamp instead, to compare with.
 
+mod alpha_mask;
 mod hide;
-mod holes;
 mod open;
 mod rays;
 mod seeds;
@@ -23,9 +23,9 @@ use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::lamp::{LampPath, LampSegment};
 use crate::trace::Tracer;
+use alpha_mask::{Parts, Pierced};
 use glam::DVec3;
 use hide::Leg;
-use holes::{Parts, Pierced};
 use open::Open;
 use seeds::Seeds;
 use span::{Span, common, not_negative};

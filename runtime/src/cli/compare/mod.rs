@@ -1,24 +1,24 @@
 //! `sunplay compare`.
 
-mod about;
 pub mod args;
-mod field;
-mod looks;
+mod inputs;
+mod report_notes;
+mod viewpoints;
 
-use super::artist::{open_adapter, set_threads};
+use super::draw::{open_adapter, set_threads};
 use super::exit::Failure;
 use super::files::png_bytes;
 use super::out::print;
 use super::terminal::Terminal;
-use about::{machine, notes, scene_entry, warnings};
 use args::CompareArgs;
-use field::Field;
-use looks::Looks;
+use inputs::ComparisonInputs;
+use report_notes::{machine, notes, scene_entry, warnings};
 use sunbake::maps::Bits;
 use sunbake::progress::Progress;
 use sunbake::report::folder;
 use sunbake_runtime::compare::report::{FORMAT, LimitEntry, Pictures, Report, VERSION, page};
-use sunbake_runtime::compare::{Contender, Contest, Outcome, Pair, selected, sheet};
+use sunbake_runtime::compare::{Comparison, Outcome, Pair, TechniqueSpec, selected, sheet};
+use viewpoints::Viewpoints;
 
 /// Name of the sheet.
 const SHEET: &str = "sheet.png";
@@ -31,24 +31,24 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     let gpu = open_adapter(args.renderer, args.quiet)?;
     let terminal = Terminal::new(args.quiet).listening();
     let stopped = |failure: Failure| Failure { code: terminal.signal_code().unwrap_or(failure.code), ..failure };
-    let field = Field::of(args, against, &terminal).map_err(stopped)?;
-    let looks = Looks::of(args, &field.stage)?;
+    let inputs = ComparisonInputs::of(args, against, &terminal).map_err(stopped)?;
+    let viewpoints = Viewpoints::of(args, &inputs.stage)?;
     // A CPU's times tell little of a GPU's, however often they are taken.
     let rounds = args.rounds.unwrap_or(if gpu.as_ref().is_some_and(|gpu| !gpu.is_software) { 3 } else { 1 });
-    let contest = Contest {
-        sets: &field.sets,
+    let comparison = Comparison {
+        sets: &inputs.sets,
         gpu: gpu.as_ref(),
-        contenders: &field.contenders,
+        techniques: &inputs.techniques,
         against,
-        views: &looks.views,
-        times: &looks.times,
+        views: &viewpoints.views,
+        times: &viewpoints.times,
         map_size_texels: args.map_size,
         rounds,
     };
-    let scene = scene_entry(args, &field);
-    let notes = notes(&field);
-    terminal.begin("comparing", contest.frame_count());
-    let outcome = contest.run(field.stage, &|| {
+    let scene = scene_entry(args, &inputs);
+    let notes = notes(&inputs);
+    terminal.begin("comparing", comparison.frame_count());
+    let outcome = comparison.run(inputs.stage, &|| {
         terminal.step(1);
         !terminal.is_cancelled()
     });
@@ -63,11 +63,11 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
         machine: machine(args, gpu.as_ref()),
         reference: outcome.reference.clone(),
         size: args.size,
-        cameras: looks.cameras,
-        times: looks.moments,
+        cameras: viewpoints.cameras,
+        times: viewpoints.moments,
         rounds,
         techniques: outcome.techniques.clone(),
-        left_out: field.left_out.into_iter().chain(outcome.left_out.clone()).collect(),
+        left_out: inputs.left_out.into_iter().chain(outcome.left_out.clone()).collect(),
         limits,
         warnings: warnings(gpu.as_ref()),
         notes,
@@ -78,8 +78,8 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
 }
 
 /// Whom all are held against.
-fn reference(args: &CompareArgs) -> Result<Contender, Failure> {
-    let all = Contender::all(Bits::Sixteen, &[1, 3, 5]);
+fn reference(args: &CompareArgs) -> Result<TechniqueSpec, Failure> {
+    let all = TechniqueSpec::all(Bits::Sixteen, &[1, 3, 5]);
     let found = selected(&all, std::slice::from_ref(&args.against)).map_err(Failure::usage)?;
     match found.as_slice() {
         [one] => Ok(*one),

@@ -5,7 +5,7 @@
 mod page;
 mod pictures;
 mod tables;
-mod words;
+mod wording;
 
 pub use page::page;
 pub use pictures::{FramePictures, Pictures};

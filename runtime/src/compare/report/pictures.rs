@@ -4,7 +4,7 @@
 //! light is linear in what is seen of the sun: so a frame needs two colour pictures, with the sun wholly hidden and wholly seen, and
 //! a grey one a technique. The browser puts them together.
 
-use super::super::contest::{Outcome, codes};
+use super::super::comparison::{Outcome, codes};
 use crate::image::Raster;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -43,7 +43,7 @@ impl CasterBuffers {
         Ok(Self { points, found })
     }
 
-    /// Layout of the bindings of what a light throws. All layouts of the same bindings are alike.
+    /// Layout of the bindings of what a light extrudes. All layouts of the same bindings are alike.
     pub fn layout(&self, gpu: &Gpu, light: VolumeLight) -> wgpu::BindGroupLayout {
         let entry = |binding: u32| wgpu::BindGroupLayoutEntry {
             binding,
@@ -67,7 +67,7 @@ impl CasterBuffers {
         used.into_iter().filter(|(_, is_used)| *is_used).map(|(binding, _)| binding)
     }
 
-    /// Slots of the bindings of what a light throws.
+    /// Slots of the bindings of what a light extrudes.
     pub fn slots(&self, light: VolumeLight) -> usize {
         self.places(light).count()
     }
@@ -122,7 +122,7 @@ fn storage(gpu: &Gpu, label: &'static str, contents: &[u8]) -> Result<wgpu::Buff
 }
 
 /// What a light makes of the casters, kept while it stands still.
-pub struct Thrown {
+pub struct Extruded {
     /// The light.
     pub light: Light,
     /// What the light makes of the triangles.
@@ -150,7 +150,7 @@ pub struct Run {
     pub slots: usize,
 }
 
-impl Thrown {
+impl Extruded {
     /// Finds what a light makes of the casters.
     pub fn new(
         gpu: &Gpu,
@@ -310,7 +310,7 @@ fn group(
 
 /// What is drawn at once.
 #[derive(Debug, Clone)]
-pub struct Draw {
+pub struct DrawCall {
     /// Of which the vertex shader needs to know, where it finds silhouettes.
     pub part: Part,
     /// Corners.
@@ -322,22 +322,22 @@ pub struct Draw {
 /// What a plan makes of the volumes: for each run, what is counted before the surface and what behind it.
 pub struct Draws {
     /// For each run, before and behind.
-    pub runs: Vec<[Vec<Draw>; 2]>,
+    pub runs: Vec<[Vec<DrawCall>; 2]>,
 }
 
 impl Draws {
     /// Follows a plan.
-    pub fn new(thrown: &Thrown, plan: &FramePlan, savings: Savings) -> Self {
-        let of_run = |run| [true, false].map(|is_z_pass| draws(thrown, run, plan, is_z_pass, savings));
+    pub fn new(extruded: &Extruded, plan: &FramePlan, savings: Savings) -> Self {
+        let of_run = |run| [true, false].map(|is_z_pass| draws(extruded, run, plan, is_z_pass, savings));
         let runs = match plan.draws_anything() {
-            true => thrown.runs.iter().map(of_run).collect(),
+            true => extruded.runs.iter().map(of_run).collect(),
             false => Vec::new(),
         };
         Self { runs }
     }
 
     /// All of them, and whether each is counted before the surface.
-    pub fn all(&self) -> impl Iterator<Item = (&Draw, bool)> {
+    pub fn all(&self) -> impl Iterator<Item = (&DrawCall, bool)> {
         self.runs.iter().flat_map(|[before, behind]| {
             before.iter().map(|draw| (draw, true)).chain(behind.iter().map(|draw| (draw, false)))
         })
@@ -349,9 +349,9 @@ impl Draws {
     }
 }
 
-fn draws(thrown: &Thrown, run: &Run, plan: &FramePlan, is_z_pass: bool, savings: Savings) -> Vec<Draw> {
-    let draw = |part, instances| move |corners| Draw { part, corners, instances };
-    if thrown.kind.1 == VolumeCorners::Indexed {
+fn draws(extruded: &Extruded, run: &Run, plan: &FramePlan, is_z_pass: bool, savings: Savings) -> Vec<DrawCall> {
+    let draw = |part, instances| move |corners| DrawCall { part, corners, instances };
+    if extruded.kind.1 == VolumeCorners::Indexed {
         return plan
             .ranges(&run.parts, is_z_pass, &Part::ALL, |_| true)
             .into_iter()
@@ -359,7 +359,7 @@ fn draws(thrown: &Thrown, run: &Run, plan: &FramePlan, is_z_pass: bool, savings:
             .collect();
     }
     let walls = |doubles: bool| {
-        let is_wanted = |caster| thrown.may_double(caster, savings) == doubles;
+        let is_wanted = |caster| extruded.may_double(caster, savings) == doubles;
         let ranges = plan.ranges(&run.parts, is_z_pass, &[Part::Walls], is_wanted);
         ranges.into_iter().map(draw(Part::Walls, 1 + u32::from(doubles)))
     };

@@ -32,7 +32,7 @@ use crate::plan::DrawPlan;
 use crate::stage::Stage;
 use crate::volumes::culling::Receivers;
 use crate::volumes::{CasterCounts, Casters, FramePlan, Light, Mode, PlanCounts, Savings};
-use buffers::{CasterBuffers, Draws, Thrown};
+use buffers::{CasterBuffers, Draws, Extruded};
 use glam::Vec3;
 use needs::{LightNeeds, VolumeNeeds, added, hard_lights};
 use passes::Ends;
@@ -111,7 +111,7 @@ pub struct VolumeRenderer<'g> {
     receivers: Receivers,
     buffers: CasterBuffers,
     /// Of the last sun and the last lamp.
-    thrown: [Option<Thrown>; 2],
+    extruded: [Option<Extruded>; 2],
     sun_radius_rad: f64,
     programs: BTreeMap<ProgramKey, Program>,
     targets: BTreeMap<Output, Target>,
@@ -160,7 +160,7 @@ impl<'g> VolumeRenderer<'g> {
             casters,
             receivers: Receivers::new(stage),
             buffers,
-            thrown: [None, None],
+            extruded: [None, None],
             sun_radius_rad: stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad),
             programs: BTreeMap::new(),
             targets: BTreeMap::new(),
@@ -246,7 +246,7 @@ impl<'g> VolumeRenderer<'g> {
 
     /// Forgets what the last lights made of the casters.
     pub fn forget(&mut self) {
-        self.thrown = [None, None];
+        self.extruded = [None, None];
     }
 
     /// What casts.
@@ -334,7 +334,7 @@ impl<'g> VolumeRenderer<'g> {
         shining: &Shining,
         ends: Ends,
     ) -> Result<(), GpuError> {
-        let found = self.throw(&shining.light)?;
+        let found = self.extrude(&shining.light)?;
         let started = Instant::now();
         let (plan, draws) = self.plan(view, &shining.light);
         let plan_seconds = started.elapsed().as_secs_f64();
@@ -354,7 +354,7 @@ impl<'g> VolumeRenderer<'g> {
         let name = ["sun", "lamp"][slot(light)];
         let [find_seconds, overlap_seconds] = found;
         let (plan, triangles) = (plan.counts, draws.triangles());
-        let runs = self.thrown[slot(light)].as_ref().map_or(0, |thrown| thrown.runs.len());
+        let runs = self.extruded[slot(light)].as_ref().map_or(0, |extruded| extruded.runs.len());
         match self.report.lights.iter_mut().find(|report| report.light == name) {
             Some(report) => {
                 (report.plan, report.triangles, report.runs) = (plan, triangles, report.runs.max(runs));
@@ -400,38 +400,38 @@ impl<'g> VolumeRenderer<'g> {
 
     fn needs_of(&self, last: &Last) -> LightNeeds {
         let &Last { slot, hard, added, count, shaded, .. } = last;
-        let thrown = self.thrown[slot].as_ref();
+        let extruded = self.extruded[slot].as_ref();
         LightNeeds {
             hard,
             added,
             count,
             shaded,
             faces: last.faces.clone(),
-            runs: thrown.map_or(0, |thrown| thrown.runs.len()),
-            slots: thrown.map_or(0, |thrown| self.buffers.slots(thrown.kind.0)),
-            buffers: thrown.map_or((0, 0), Thrown::size),
+            runs: extruded.map_or(0, |extruded| extruded.runs.len()),
+            slots: extruded.map_or(0, |extruded| self.buffers.slots(extruded.kind.0)),
+            buffers: extruded.map_or((0, 0), Extruded::size),
         }
     }
 
     /// Makes sure that what is kept is what this light makes of the casters. Seconds it took: in all, and for overlaps.
-    fn throw(&mut self, light: &Light) -> Result<[f64; 2], GpuError> {
-        let kept = &self.thrown[slot(light)];
-        if self.settings.savings.cache && kept.as_ref().is_some_and(|thrown| thrown.light == *light) {
+    fn extrude(&mut self, light: &Light) -> Result<[f64; 2], GpuError> {
+        let kept = &self.extruded[slot(light)];
+        if self.settings.savings.cache && kept.as_ref().is_some_and(|extruded| extruded.light == *light) {
             return Ok([0.0; 2]);
         }
         let VolumeSettings { mode, savings, .. } = self.settings;
-        let thrown = Thrown::new(self.gpu, &self.casters, &self.buffers, *light, mode, savings)?;
-        let seconds = [thrown.find_seconds, thrown.overlap_seconds];
-        self.thrown[slot(light)] = Some(thrown);
+        let extruded = Extruded::new(self.gpu, &self.casters, &self.buffers, *light, mode, savings)?;
+        let seconds = [extruded.find_seconds, extruded.overlap_seconds];
+        self.extruded[slot(light)] = Some(extruded);
         Ok(seconds)
     }
 
-    /// What to draw of what was thrown.
+    /// What to draw of what was extruded.
     fn plan(&self, view: &View, light: &Light) -> (FramePlan, Draws) {
         let VolumeSettings { mode, savings, .. } = self.settings;
-        let thrown = self.thrown[slot(light)].as_ref().expect("a light is planned once it has thrown");
-        let plan = FramePlan::new(&self.casters, &self.receivers, &thrown.faces, light, view, mode, savings);
-        let draws = Draws::new(thrown, &plan, savings);
+        let extruded = self.extruded[slot(light)].as_ref().expect("a light is planned once it has extruded");
+        let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.faces, light, view, mode, savings);
+        let draws = Draws::new(extruded, &plan, savings);
         (plan, draws)
     }
 
@@ -452,7 +452,7 @@ impl<'g> VolumeRenderer<'g> {
         };
         gpu.checked("drawing volumes", || {
             // Of several suns the last one's volumes are at hand.
-            self.throw(&shining.light)?;
+            self.extrude(&shining.light)?;
             self.scene.frame.write(gpu, view, &shining.moment);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             let slot = slot(&shining.light);
@@ -467,9 +467,9 @@ impl<'g> VolumeRenderer<'g> {
     pub fn census(&self) -> Census {
         let surfaces = self.programs.keys().filter_map(ProgramKey::batch);
         let scene = Census::of_scene(&self.scene).with_pipelines(self.programs.len(), surfaces);
-        let thrown = self.thrown.iter().flatten().map(Thrown::size);
-        let (buffers, bytes) = thrown.fold(self.buffers.size(), |(n, b), (m, c)| (n + m, b + c));
-        let runs = || self.thrown.iter().flatten().flat_map(|thrown| &thrown.runs);
+        let extruded = self.extruded.iter().flatten().map(Extruded::size);
+        let (buffers, bytes) = extruded.fold(self.buffers.size(), |(n, b), (m, c)| (n + m, b + c));
+        let runs = || self.extruded.iter().flatten().flat_map(|extruded| &extruded.runs);
         Census {
             passes: self.report.passes,
             targets: 2 * self.targets.len(),
@@ -490,7 +490,7 @@ pub fn volumes_plan(stage: &Stage, settings: &VolumeSettings, output: Output) ->
     needs.plan(&SceneNeeds::new(stage, None), &casters.counts, settings)
 }
 
-/// Where what a light throws is kept, and at which place in the lists of names.
+/// Where what a light extrudes is kept, and at which place in the lists of names.
 fn slot(light: &Light) -> usize {
     match light {
         Light::Sun { .. } => 0,

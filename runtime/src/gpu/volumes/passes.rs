@@ -4,7 +4,7 @@ use super::super::renderer::Output;
 use super::super::scene::depth_key;
 use super::super::stopwatch::Phase;
 use super::super::target::drawn_into;
-use super::buffers::{Draw, Draws, Run};
+use super::buffers::{DrawCall, Draws, Run};
 use super::programs::{KEPT, ProgramKey, hard_key, volume_key};
 use super::{Shining, VolumeRenderer};
 use crate::volumes::FramePlan;
@@ -70,7 +70,7 @@ impl VolumeRenderer<'_> {
         plan: &FramePlan,
         draws: &Draws,
     ) {
-        let Some(thrown) = &self.thrown[slot] else { return };
+        let Some(extruded) = &self.extruded[slot] else { return };
         self.report.passes += 1;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("volumes"),
@@ -85,22 +85,22 @@ impl VolumeRenderer<'_> {
         let [left, top, width, height] = plan.scissor;
         pass.set_scissor_rect(left, top, width, height);
         pass.set_stencil_reference(KEPT);
-        for (i, (run, draws)) in thrown.runs.iter().zip(&draws.runs).enumerate() {
+        for (i, (run, draws)) in extruded.runs.iter().zip(&draws.runs).enumerate() {
             pass.set_bind_group(0, &self.scene.frame.group, &[]);
             for (draw, is_z_pass) in [(&draws[0], true), (&draws[1], false)] {
                 for draw in draw {
-                    let key = volume_key(thrown, draw.part, VolumeUse::Stencil, is_z_pass);
+                    let key = volume_key(extruded, draw.part, VolumeUse::Stencil, is_z_pass);
                     self.draw_faces(&mut pass, run, draw, ProgramKey::Volume(key));
                 }
             }
-            if i + 1 < thrown.runs.len() {
+            if i + 1 < extruded.runs.len() {
                 pass.set_pipeline(&self.programs[&ProgramKey::Keep].pipeline);
                 pass.draw(0..3, 0..1);
             }
         }
     }
 
-    fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, run: &Run, draw: &Draw, key: ProgramKey) {
+    fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, run: &Run, draw: &DrawCall, key: ProgramKey) {
         pass.set_pipeline(&self.programs[&key].pipeline);
         pass.set_bind_group(1, &run.group, &[]);
         match &run.indices {
@@ -162,7 +162,7 @@ impl VolumeRenderer<'_> {
         draws: &Draws,
         of: VolumeUse,
     ) {
-        let Some(thrown) = &self.thrown[slot] else { return };
+        let Some(extruded) = &self.extruded[slot] else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("faces"),
             color_attachments: &[Some(drawn_into(
@@ -175,9 +175,9 @@ impl VolumeRenderer<'_> {
         let [left, top, width, height] = plan.scissor;
         pass.set_scissor_rect(left, top, width, height);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        for (run, [before, behind]) in thrown.runs.iter().zip(&draws.runs) {
+        for (run, [before, behind]) in extruded.runs.iter().zip(&draws.runs) {
             for draw in before.iter().chain(behind) {
-                let key = volume_key(thrown, draw.part, of, false);
+                let key = volume_key(extruded, draw.part, of, false);
                 self.draw_faces(&mut pass, run, draw, ProgramKey::Volume(key));
             }
         }

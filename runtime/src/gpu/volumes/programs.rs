@@ -4,7 +4,7 @@ use super::super::batch::BatchKey;
 use super::super::program::{Program, Source, State, depth_state};
 use super::super::renderer::{Output, sky_program, surface_source};
 use super::super::target::{STENCIL_FORMAT, Target};
-use super::buffers::{Draws, Thrown};
+use super::buffers::{Draws, Extruded};
 use super::needs::surface_programs;
 use super::{GpuError, Shining, VolumeRenderer};
 use crate::volumes::Part;
@@ -113,9 +113,9 @@ impl VolumeRenderer<'_> {
 
     /// Makes the programs over faces that a plan needs and that are not there yet.
     pub(super) fn prepare_faces(&mut self, slot: usize, draws: &Draws, of: VolumeUse) {
-        let Some(thrown) = &self.thrown[slot] else { return };
+        let Some(extruded) = &self.extruded[slot] else { return };
         let faces: Vec<VolumeKey> =
-            draws.all().map(|(draw, is_z_pass)| volume_key(thrown, draw.part, of, is_z_pass)).collect();
+            draws.all().map(|(draw, is_z_pass)| volume_key(extruded, draw.part, of, is_z_pass)).collect();
         if let Some(light) = self.last.iter_mut().rfind(|light| light.slot == slot) {
             light.faces.extend(faces.iter().copied());
         }
@@ -220,9 +220,9 @@ impl VolumeRenderer<'_> {
     }
 }
 
-/// The key of a pipeline that draws a part of what a light throws.
-pub fn volume_key(thrown: &Thrown, part: Part, of: VolumeUse, is_z_pass: bool) -> VolumeKey {
-    let (light, corners) = thrown.kind;
+/// The key of a pipeline that draws a part of what a light extrudes.
+pub fn volume_key(extruded: &Extruded, part: Part, of: VolumeUse, is_z_pass: bool) -> VolumeKey {
+    let (light, corners) = extruded.kind;
     let is_counted = of == VolumeUse::Stencil;
     VolumeKey {
         light,
@@ -230,7 +230,7 @@ pub fn volume_key(thrown: &Thrown, part: Part, of: VolumeUse, is_z_pass: bool) -
         part,
         of,
         is_z_pass: is_z_pass && is_counted,
-        is_run: thrown.runs.len() > 1 && is_counted,
+        is_run: extruded.runs.len() > 1 && is_counted,
     }
 }
 

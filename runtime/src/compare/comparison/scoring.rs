@@ -1,19 +1,19 @@
-//! A contender's pictures, held against the reference's.
+//! A technique's pictures, held against the reference's.
 
-use super::super::contender::Contender;
 use super::super::report::{FrameEntry, Preparation, TechniqueEntry};
 use super::super::score::{Tally, luma, structural_similarity};
+use super::super::technique::TechniqueSpec;
 use super::sets::set_for;
 use super::times::mean_times;
-use super::{Contest, Drawn, LitFrame, SetOnDisk, Take, lit_by};
+use super::{Comparison, Drawn, LitFrame, SetOnDisk, Take, lit_by};
 use crate::image::Raster;
 use rayon::prelude::*;
 
-impl Contest<'_> {
+impl Comparison<'_> {
     /// What a report says of it. `lumas` are the reference's lit pictures, `hard` truths of the sun's centre.
     pub(super) fn judged(
         &self,
-        contender: Contender,
+        technique: TechniqueSpec,
         drawn: &Drawn,
         frames: &[LitFrame],
         lumas: &[Raster<u8>],
@@ -36,7 +36,7 @@ impl Contest<'_> {
             error: tallies[i].score(),
             frame_ms: drawn.times[i].frame_ms,
         };
-        let hard_error = hard.filter(|_| contender.is_hard()).map(|hard| {
+        let hard_error = hard.filter(|_| technique.is_hard()).map(|hard| {
             let mut tally = Tally::default();
             for ((seen, hard), take) in drawn.seen.iter().zip(hard).zip(takes) {
                 let hits = take.shot.hits();
@@ -44,17 +44,17 @@ impl Contest<'_> {
             }
             tally.score()
         });
-        let playback = match contender {
-            Contender::Baked(playback) => Some(playback),
+        let playback = match technique {
+            TechniqueSpec::Baked(playback) => Some(playback),
             _ => None,
         };
         let has_its_lanes = |set: &&SetOnDisk| playback.is_some_and(|one| one.lanes as u64 == set.entry.lanes);
         let has_its_bits = |set: &&SetOnDisk| playback.is_some_and(|one| one.bits.count() == set.entry.bits);
         let set = playback.and_then(|one| set_for(self.sets, one)).filter(has_its_lanes);
         TechniqueEntry {
-            name: contender.to_string(),
-            family: contender.family().into(),
-            is_hard: contender.is_hard(),
+            name: technique.to_string(),
+            family: technique.family().into(),
+            is_hard: technique.is_hard(),
             error: all.score(),
             hard_error,
             times: mean_times(&drawn.times),

@@ -18,14 +18,14 @@ const CAMERAS: usize = 3;
 const MOST_PIXELS: u64 = 1 << 26;
 
 /// Cameras and times.
-pub struct Looks {
+pub struct Viewpoints {
     pub views: Vec<View>,
     pub times: Vec<f64>,
     pub cameras: Vec<CameraEntry>,
     pub moments: Vec<TimeEntry>,
 }
 
-impl Looks {
+impl Viewpoints {
     pub fn of(args: &CompareArgs, stage: &Stage) -> Result<Self, Failure> {
         check(args, &stage.scene, stage.path.as_ref())?;
         let Some(path) = &stage.path else { return Err(no_sun()) };

@@ -1,22 +1,22 @@
 //! What a report says of the scene, of the machine and of itself.
 
 use super::args::CompareArgs;
-use super::field::Field;
+use super::inputs::ComparisonInputs;
 use std::path::Path;
 use sunbake::maps::Bits;
 use sunbake::report::Machine;
 use sunbake::scene::Alpha;
 use sunbake_runtime::compare::report::{MachineEntry, SceneEntry};
-use sunbake_runtime::compare::{Contender, Playback};
+use sunbake_runtime::compare::{Playback, TechniqueSpec};
 use sunbake_runtime::gpu::Gpu;
 
 /// The scene, and the sets of it.
-pub fn scene_entry(args: &CompareArgs, field: &Field) -> SceneEntry {
+pub fn scene_entry(args: &CompareArgs, inputs: &ComparisonInputs) -> SceneEntry {
     SceneEntry {
         name: name_of(&args.source),
-        sha256: field.source_sha256.clone(),
-        triangles: field.stage.scene.triangle_count() as u64,
-        sets: field.sets.iter().map(|set| set.entry.clone()).collect(),
+        sha256: inputs.source_sha256.clone(),
+        triangles: inputs.stage.scene.triangle_count() as u64,
+        sets: inputs.sets.iter().map(|set| set.entry.clone()).collect(),
     }
 }
 
@@ -54,20 +54,21 @@ pub fn warnings(gpu: Option<&Gpu>) -> Vec<String> {
 }
 
 /// How to read the numbers.
-pub fn notes(field: &Field) -> Vec<String> {
-    let has = |is: fn(&Contender) -> bool| field.contenders.iter().any(is);
-    let has_holes = field.stage.scene.materials.iter().any(|material| matches!(material.alpha, Alpha::Cut { .. }));
+pub fn notes(inputs: &ComparisonInputs) -> Vec<String> {
+    let has = |is: fn(&TechniqueSpec) -> bool| inputs.techniques.iter().any(is);
+    let has_alpha_mask =
+        inputs.stage.scene.materials.iter().any(|material| matches!(material.alpha, Alpha::Cut { .. }));
     let mut notes = Vec::new();
-    if has(|one| matches!(one, Contender::Baked(Playback { bits: Bits::Eight, .. }))) {
-        let are_made = field.sets.iter().any(|set| set.entry.bits == 16);
+    if has(|one| matches!(one, TechniqueSpec::Baked(Playback { bits: Bits::Eight, .. }))) {
+        let are_made = inputs.sets.iter().any(|set| set.entry.bits == 16);
         notes.extend(are_made.then(|| "Times of 8 bits are those of 16 bits, rounded again.".to_owned()));
     }
-    if has(|one| matches!(one, Contender::Volumes(_))) && has_holes {
+    if has(|one| matches!(one, TechniqueSpec::Volumes(_))) && has_alpha_mask {
         notes.push(
             "Shadow volumes cast whole cards where leaves are cut out of them: part of their error is that.".into(),
         );
     }
-    if has(Contender::is_hard) {
+    if has(TechniqueSpec::is_hard) {
         notes.push(
             "What takes the sun for a point has no penumbras: held against the disc it errs there however well it works. How far \
              it is from truth of the sun's centre stands beside it."

@@ -1,18 +1,18 @@
-//! A comparison: every contender draws every frame, and each picture is held against the reference's.
+//! A comparison: every technique draws every frame, and each picture is held against the reference's.
 //!
 //! Contenders are built, drawn and dropped one after the other, so that only one is in memory. Each draws all frames once to warm
 //! up, then all of them so many rounds; the least of a frame's times counts. Nothing is kept from frame to frame, as under a sun
 //! that moves: shadow maps and silhouettes are found anew.
 
-mod judge;
+mod scoring;
 mod sets;
 mod times;
 
 pub use sets::SetOnDisk;
 
-use super::contender::Contender;
 use super::report::{LeftOut, ReferenceEntry, TechniqueEntry, Times};
 use super::score::{Tally, luma};
+use super::technique::TechniqueSpec;
 use crate::camera::View;
 use crate::gpu::{Gpu, GpuError, VolumeSettings};
 use crate::image::Raster;
@@ -30,15 +30,15 @@ use sunbake_shaders::AmbientModel;
 use times::{mean_times, timed_frame};
 
 /// What is compared, where and when.
-pub struct Contest<'a> {
+pub struct Comparison<'a> {
     /// Sets to play back; each has another count of lanes.
     pub sets: &'a [SetOnDisk],
     /// What draws; the CPU where there is none.
     pub gpu: Option<&'a Gpu>,
     /// Who takes part.
-    pub contenders: &'a [Contender],
+    pub techniques: &'a [TechniqueSpec],
     /// Whom they are held against.
-    pub against: Contender,
+    pub against: TechniqueSpec,
     /// Through what; all of one size.
     pub views: &'a [View],
     /// When, on the sun's path.
@@ -51,9 +51,9 @@ pub struct Contest<'a> {
 
 /// A frame, as it looks with the sun wholly hidden and wholly seen.
 pub struct LitFrame {
-    /// Index in [`Contest::views`].
+    /// Index in [`Comparison::views`].
     pub camera: usize,
-    /// Index in [`Contest::times`].
+    /// Index in [`Comparison::times`].
     pub time: usize,
     /// Linear light without the sun.
     pub dark: Raster<Vec3>,
@@ -79,7 +79,7 @@ pub struct Outcome {
 
 /// Why there is no outcome.
 #[derive(Debug, thiserror::Error)]
-pub enum ContestError {
+pub enum ComparisonError {
     /// A set cannot be read.
     #[error(transparent)]
     Stage(#[from] StageError),
@@ -96,7 +96,7 @@ pub enum ContestError {
     Cancelled,
 }
 
-/// Why a contender drew nothing.
+/// Why a technique drew nothing.
 enum Absent {
     Gpu(GpuError),
     Stage(StageError),
@@ -116,7 +116,7 @@ impl From<StageError> for Absent {
     }
 }
 
-/// What a contender drew.
+/// What a technique drew.
 struct Drawn {
     seen: Vec<Raster<f32>>,
     times: Vec<Times>,
@@ -131,16 +131,17 @@ struct Take<'a, 's> {
     moment: Moment,
 }
 
-impl Contest<'_> {
+impl Comparison<'_> {
     /// Frames that are drawn in all, rounds and warming up counted: what `on_frame` is called for.
     pub fn frame_count(&self) -> u64 {
         let frames = (self.views.len() * self.times.len()) as u64;
-        let rounds = |one: &Contender| if matches!(one, Contender::Truth(_)) { 1 } else { u64::from(self.rounds) + 1 };
-        self.contenders.iter().chain([&self.against]).map(|one| frames * rounds(one)).sum()
+        let rounds =
+            |one: &TechniqueSpec| if matches!(one, TechniqueSpec::Truth(_)) { 1 } else { u64::from(self.rounds) + 1 };
+        self.techniques.iter().chain([&self.against]).map(|one| frames * rounds(one)).sum()
     }
 
     /// Draws and compares on a stage that holds no times. `on_frame` is called after each frame, and returns false to stop.
-    pub fn run(&self, stage: Stage, on_frame: &dyn Fn() -> bool) -> Result<Outcome, ContestError> {
+    pub fn run(&self, stage: Stage, on_frame: &dyn Fn() -> bool) -> Result<Outcome, ComparisonError> {
         let lit = self.lit_frames(&stage);
         // What techniques keep of ambient light is nothing that they are compared by.
         let stage = stage.with_ambient(AmbientModel::Hemisphere);
@@ -174,17 +175,17 @@ impl Contest<'_> {
             left_out: Vec::new(),
             reference: entry,
         };
-        for &contender in self.contenders {
-            match self.draw(contender, &stage, &mut reader, &takes, on_frame) {
+        for &technique in self.techniques {
+            match self.draw(technique, &stage, &mut reader, &takes, on_frame) {
                 Ok(drawn) => {
-                    let entry = self.judged(contender, &drawn, &outcome.frames, &lumas, hard.as_deref(), &takes);
+                    let entry = self.judged(technique, &drawn, &outcome.frames, &lumas, hard.as_deref(), &takes);
                     outcome.techniques.push(entry);
                     outcome.seen.push(drawn.seen.iter().map(codes).collect());
                 }
-                Err(Absent::Cancelled) => return Err(ContestError::Cancelled),
+                Err(Absent::Cancelled) => return Err(ComparisonError::Cancelled),
                 Err(Absent::Stage(error)) => return Err(error.into()),
-                Err(Absent::Gpu(error)) => outcome.left_out.push(left_out(contender, error.to_string())),
-                Err(Absent::Other(reason)) => outcome.left_out.push(left_out(contender, reason)),
+                Err(Absent::Gpu(error)) => outcome.left_out.push(left_out(technique, error.to_string())),
+                Err(Absent::Other(reason)) => outcome.left_out.push(left_out(technique, reason)),
             }
         }
         Ok(outcome)
@@ -211,27 +212,27 @@ impl Contest<'_> {
     }
 
     /// Truths of the sun's centre, if somebody takes the sun for a point and is held against its disc.
-    fn hard_truths(&self, takes: &[Take]) -> Result<Option<Vec<Raster<f32>>>, ContestError> {
-        let is_wanted = matches!(self.against, Contender::Truth(Truth::Soft { .. }))
-            && self.contenders.iter().any(Contender::is_hard);
+    fn hard_truths(&self, takes: &[Take]) -> Result<Option<Vec<Raster<f32>>>, ComparisonError> {
+        let is_wanted = matches!(self.against, TechniqueSpec::Truth(Truth::Soft { .. }))
+            && self.techniques.iter().any(TechniqueSpec::is_hard);
         let truth = |take: &Take| Truth::Hard.visibility(take.shot, &take.moment);
         let all = || takes.iter().map(truth).collect::<Result<Vec<_>, _>>();
         is_wanted.then(all).transpose().map_err(|error| self.no_reference(Absent::Gpu(error)))
     }
 
-    fn no_reference(&self, absent: Absent) -> ContestError {
+    fn no_reference(&self, absent: Absent) -> ComparisonError {
         let name = self.against.to_string();
         match absent {
-            Absent::Cancelled => ContestError::Cancelled,
+            Absent::Cancelled => ComparisonError::Cancelled,
             Absent::Stage(error) => error.into(),
-            Absent::Gpu(error) => ContestError::Reference { name, reason: error.to_string() },
-            Absent::Other(reason) => ContestError::Reference { name, reason },
+            Absent::Gpu(error) => ComparisonError::Reference { name, reason: error.to_string() },
+            Absent::Other(reason) => ComparisonError::Reference { name, reason },
         }
     }
 
-    fn reference_entry(&self, takes: &[Take], drawn: &Drawn) -> Result<ReferenceEntry, ContestError> {
+    fn reference_entry(&self, takes: &[Take], drawn: &Drawn) -> Result<ReferenceEntry, ComparisonError> {
         let noise = match self.against {
-            Contender::Truth(Truth::Soft { rays }) => {
+            TechniqueSpec::Truth(Truth::Soft { rays }) => {
                 let in_penumbra =
                     |seen: &Raster<f32>| seen.pixels.iter().filter(|&&seen| seen > 0.0 && seen < 1.0).count();
                 let most = (0..takes.len()).max_by_key(|&i| in_penumbra(&drawn.seen[i]));
@@ -252,19 +253,19 @@ impl Contest<'_> {
         Ok(ReferenceEntry { name: self.against.to_string(), frame_ms: mean_times(&drawn.times).frame_ms, noise })
     }
 
-    /// Builds a contender, draws every frame and drops it again.
+    /// Builds a technique, draws every frame and drops it again.
     fn draw(
         &self,
-        contender: Contender,
+        technique: TechniqueSpec,
         stage: &Stage,
         reader: &mut SetReader,
         takes: &[Take],
         on_frame: &dyn Fn() -> bool,
     ) -> Result<Drawn, Absent> {
         let start = Instant::now();
-        match (contender, self.gpu) {
-            (Contender::Truth(truth), _) => self.draw_with(&mut { truth }, 0, start, takes, on_frame),
-            (Contender::Baked(playback), gpu) => {
+        match (technique, self.gpu) {
+            (TechniqueSpec::Truth(truth), _) => self.draw_with(&mut { truth }, 0, start, takes, on_frame),
+            (TechniqueSpec::Baked(playback), gpu) => {
                 let played = reader.stage(playback)?;
                 let start = Instant::now();
                 let mut technique: Box<dyn Technique> = match gpu {
@@ -273,15 +274,15 @@ impl Contest<'_> {
                 };
                 self.draw_with(technique.as_mut(), self.rounds, start, takes, on_frame)
             }
-            (Contender::Volumes(_) | Contender::Map(_), None) => {
+            (TechniqueSpec::Volumes(_) | TechniqueSpec::Map(_), None) => {
                 Err(Absent::Other("needs a GPU adapter, and there is none here".into()))
             }
-            (Contender::Volumes(mode), Some(gpu)) => {
+            (TechniqueSpec::Volumes(mode), Some(gpu)) => {
                 let savings = Savings { cache: false, ..Savings::default() };
                 let settings = VolumeSettings { mode, savings, is_timed: true, ..VolumeSettings::default() };
                 self.draw_with(&mut Volumes::new(gpu, stage, settings)?, self.rounds, start, takes, on_frame)
             }
-            (Contender::Map(variant), Some(gpu)) => {
+            (TechniqueSpec::Map(variant), Some(gpu)) => {
                 let mut technique = ShadowMaps::new(gpu, stage, self.map_settings(variant))?;
                 self.draw_with(&mut technique, self.rounds, start, takes, on_frame)
             }
@@ -332,8 +333,8 @@ fn go_on(on_frame: &dyn Fn() -> bool) -> Result<(), Absent> {
     if on_frame() { Ok(()) } else { Err(Absent::Cancelled) }
 }
 
-fn left_out(contender: Contender, reason: String) -> LeftOut {
-    LeftOut { name: contender.to_string(), reason }
+fn left_out(technique: TechniqueSpec, reason: String) -> LeftOut {
+    LeftOut { name: technique.to_string(), reason }
 }
 
 /// A frame's light, given how much of the sun each pixel sees. What is no number is shown as sun.

@@ -13,7 +13,7 @@ use sunbake_shaders::Filter;
 
 /// A way to find visibility, with all that decides what it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Contender {
+pub enum TechniqueSpec {
     /// A baked set, played back.
     Baked(Playback),
     /// Shadow volumes.
@@ -35,7 +35,7 @@ pub struct Playback {
     pub filter: Filter,
 }
 
-impl Display for Contender {
+impl Display for TechniqueSpec {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
         match self {
             Self::Baked(Playback { bits, lanes, filter }) => {
@@ -50,7 +50,7 @@ impl Display for Contender {
     }
 }
 
-impl Contender {
+impl TechniqueSpec {
     /// What is compared unless told otherwise, of a set with these bits and each of these counts of lanes.
     pub fn all(most_bits: Bits, lane_counts: &[usize]) -> Vec<Self> {
         let bits: &[Bits] = if most_bits == Bits::Sixteen { &[Bits::Sixteen, Bits::Eight] } else { &[Bits::Eight] };
@@ -101,15 +101,15 @@ impl Contender {
 
 /// Those of `all` that names mean, in the order of `all`; then modes of volumes and truths that are asked for by their own names.
 /// No names mean all.
-pub fn selected(all: &[Contender], names: &[String]) -> Result<Vec<Contender>, String> {
+pub fn selected(all: &[TechniqueSpec], names: &[String]) -> Result<Vec<TechniqueSpec>, String> {
     if names.is_empty() {
         return Ok(all.to_vec());
     }
-    let others = Mode::ALL.map(Contender::Volumes);
-    let mut found: Vec<Contender> = Vec::new();
-    let mut extra: Vec<Contender> = Vec::new();
+    let others = Mode::ALL.map(TechniqueSpec::Volumes);
+    let mut found: Vec<TechniqueSpec> = Vec::new();
+    let mut extra: Vec<TechniqueSpec> = Vec::new();
     for name in names {
-        let meant: Vec<Contender> = all.iter().copied().filter(|one| one.is_meant_by(name)).collect();
+        let meant: Vec<TechniqueSpec> = all.iter().copied().filter(|one| one.is_meant_by(name)).collect();
         let named = others.iter().copied().find(|one| one.to_string() == *name).or_else(|| soft_truth(name));
         match named {
             _ if !meant.is_empty() => found.extend(meant),
@@ -117,7 +117,7 @@ pub fn selected(all: &[Contender], names: &[String]) -> Result<Vec<Contender>, S
             None => return Err(unknown(all, name)),
         }
     }
-    let mut ordered: Vec<Contender> = all.iter().copied().filter(|one| found.contains(one)).collect();
+    let mut ordered: Vec<TechniqueSpec> = all.iter().copied().filter(|one| found.contains(one)).collect();
     for one in extra {
         if !ordered.contains(&one) {
             ordered.push(one);
@@ -127,15 +127,15 @@ pub fn selected(all: &[Contender], names: &[String]) -> Result<Vec<Contender>, S
 }
 
 /// `truth:soft` or `truth:soft:N`.
-fn soft_truth(name: &str) -> Option<Contender> {
+fn soft_truth(name: &str) -> Option<TechniqueSpec> {
     let rays = match name.strip_prefix("truth:soft")? {
         "" => Truth::DEFAULT_RAYS,
         rest => rest.strip_prefix(':')?.parse().ok().filter(|n| (1..=65_536).contains(n))?,
     };
-    Some(Contender::Truth(Truth::Soft { rays }))
+    Some(TechniqueSpec::Truth(Truth::Soft { rays }))
 }
 
-fn unknown(all: &[Contender], name: &str) -> String {
+fn unknown(all: &[TechniqueSpec], name: &str) -> String {
     let names: Vec<String> = all.iter().map(ToString::to_string).collect();
     format!(
         "there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N",
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     fn names(asked: &[&str]) -> Result<Vec<String>, String> {
-        let all = Contender::all(Bits::Sixteen, &[1, 3]);
+        let all = TechniqueSpec::all(Bits::Sixteen, &[1, 3]);
         let asked: Vec<String> = asked.iter().map(|&name| name.to_owned()).collect();
         Ok(selected(&all, &asked)?.iter().map(ToString::to_string).collect())
     }

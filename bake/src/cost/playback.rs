@@ -2,8 +2,8 @@
 //! than the share of the disc that stands before the surface's plane. The runtime's `playback.rs` is the twin.
 
 use super::CostError;
-use super::difference;
-use super::truth::{Place, Truth};
+use super::metric;
+use super::truth::{SurfaceSample, Truth};
 use crate::atlas::Atlas;
 use crate::disk::read::BakedSet;
 use crate::maps::{Bits, LaneMaps, PageMaps, decode_open, soft_visibility};
@@ -51,7 +51,7 @@ impl Shown<'_> {
         let placed = || truth.places.par_iter().zip(blends);
         let sun_t = placed().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
             let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend));
-            difference::apart_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
+            metric::apart_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
         });
         let sun_t = sun_t.collect();
         let open = placed().zip(&truth.open).map(|((place, (page, blend)), true_open)| {
@@ -61,7 +61,7 @@ impl Shown<'_> {
     }
 
     /// Share of the disc that is shown at the point's moments.
-    fn sun(&self, page: &PageMaps, path: &SunPath, place: &Place, blend: &Blend) -> Vec<f32> {
+    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &Blend) -> Vec<f32> {
         let discs_per_radian = 0.5 / path.angular_radius_rad.max(1e-9);
         let face = place.face();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
@@ -79,7 +79,7 @@ impl Shown<'_> {
             };
             share.min(blend.iter().map(|&(texel, weight)| weight * of_texel(texel)).sum())
         };
-        difference::moments(place.start).map(at).collect()
+        metric::moments(place.start).map(at).collect()
     }
 }
 
@@ -110,7 +110,7 @@ fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Resul
 }
 
 /// The page of a point, and the texels around it.
-pub(super) fn blend(place: &Place, scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> (usize, Blend) {
+pub(super) fn blend(place: &SurfaceSample, scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> (usize, Blend) {
     let surface = geometry.surface(place.surface.triangle as usize);
     let page = atlas.placements[surface.instance].page as usize;
     let size = atlas.pages[page];
@@ -142,7 +142,7 @@ fn blend_at(at: DVec2, width: u32, height: u32) -> Blend {
 }
 
 /// Openness that the set shows.
-fn shown_open(page: &PageMaps, place: &Place, blend: &Blend) -> Option<f32> {
+fn shown_open(page: &PageMaps, place: &SurfaceSample, blend: &Blend) -> Option<f32> {
     let ambient = page.ambient.as_ref()?;
     let side = ambient.back.as_ref().filter(|_| place.is_back).unwrap_or(&ambient.front);
     Some(blend.iter().map(|&(texel, weight)| weight * decode_open(side.open[texel])).sum())

@@ -1,7 +1,7 @@
 //! Sets on disk, and the stages that are read from them.
 
-use super::super::contender::Playback;
 use super::super::report::SetEntry;
+use super::super::technique::Playback;
 use super::Absent;
 use crate::stage::Stage;
 use std::path::{Path, PathBuf};

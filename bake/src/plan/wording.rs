@@ -22,7 +22,7 @@ fn block(entry: &EffectEntry) -> String {
     };
     let heading = format!("  {state:<4}{}", entry.effect);
     let mut text = said(&heading, &entry.why);
-    for (label, words) in [(cost, &entry.cost), (turned, &entry.turned_over_by)] {
+    for (label, words) in [(cost, &entry.cost), (turned, &entry.toggled_by)] {
         if !words.is_empty() {
             text += &said(&format!("{:MARGIN$}{label}", ""), words);
         }
@@ -31,8 +31,8 @@ fn block(entry: &EffectEntry) -> String {
 }
 
 /// A heading of few words, and beside it words as lines of their own column.
-pub fn said(heading: &str, words: &str) -> String {
-    let lines = wrapped(words, WIDTH - INDENT);
+pub fn said(heading: &str, wording: &str) -> String {
+    let lines = wrapped(wording, WIDTH - INDENT);
     let line = |(i, line): (usize, String)| {
         let heading = if i == 0 { heading } else { "" };
         // A heading that fills its column keeps a space.
@@ -64,8 +64,8 @@ mod tests {
     use super::*;
 
     fn entry(why: &str, cost: &str) -> EffectEntry {
-        let (effect, turned_over_by) = ("disc-lanes".to_owned(), String::new());
-        EffectEntry { effect, on: false, why: why.into(), cost: cost.into(), turned_over_by }
+        let (effect, toggled_by) = ("disc-lanes".to_owned(), String::new());
+        EffectEntry { effect, on: false, why: why.into(), cost: cost.into(), toggled_by }
     }
 
     #[test]

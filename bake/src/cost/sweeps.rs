@@ -7,10 +7,10 @@
 //! * *Sky*: openness against [`RAYS`] rays with another seed.
 
 use super::budget::Budget;
-use super::difference::{self, distribution, symmetric_difference_t};
+use super::metric::{self, distribution, symmetric_difference_t};
 use super::report::ErrorEntry;
-use super::subject::Subject;
 use super::truth;
+use super::workload::Workload;
 use crate::ambient::AmbientPoint;
 use crate::atlas::{Sample, SurfacePoint};
 use crate::maps::{Bits, PageEncoder, stored_intervals};
@@ -45,7 +45,7 @@ pub(super) struct Turned {
 
 /// A sample of the page's texels, and their best answers as far as they were needed so far.
 pub(super) struct Knobs<'a> {
-    subject: &'a Subject,
+    workload: &'a Workload,
     samples: Vec<Sample>,
     points: Vec<SurfacePoint>,
     exact: Vec<Intervals>,
@@ -63,20 +63,20 @@ pub(super) struct Knobs<'a> {
 
 impl<'a> Knobs<'a> {
     /// Draws as many runs as the budget suits, and finds their exact times. None if it was stopped.
-    pub fn new(subject: &'a Subject, budget: &Budget) -> Option<Self> {
+    pub fn new(workload: &'a Workload, budget: &Budget) -> Option<Self> {
         budget.task("measuring the exact engine");
-        let all = &subject.page.samples;
-        let probe: Vec<SurfacePoint> = spread(all, 2).iter().map(|sample| subject.point(sample)).collect();
-        let engine = ExactEngine::new(&subject.tracer, &[subject.path().clone()]);
-        let (_, probe_s) = subject.find_lit(&engine, &probe, budget)?;
+        let all = &workload.page.samples;
+        let probe: Vec<SurfacePoint> = spread(all, 2).iter().map(|sample| workload.point(sample)).collect();
+        let engine = ExactEngine::new(&workload.tracer, &[workload.path().clone()]);
+        let (_, probe_s) = workload.solve_visibility(&engine, &probe, budget)?;
         // 4,096 rays take some fifty times as long as the exact answer, and should take a twentieth of the budget.
         let run_s = probe_s * RUN as f64 / probe.len().max(1) as f64;
         let runs = (0.05 * budget.seconds() / (50.0 * run_s.max(1e-9))) as usize;
         let samples = spread(all, runs.clamp(4, 32));
-        let points: Vec<SurfacePoint> = samples.iter().map(|sample| subject.point(sample)).collect();
-        let (exact, exact_s) = subject.find_lit(&engine, &points, budget)?;
+        let points: Vec<SurfacePoint> = samples.iter().map(|sample| workload.point(sample)).collect();
+        let (exact, exact_s) = workload.solve_visibility(&engine, &points, budget)?;
         let mut knobs = Self {
-            subject,
+            workload,
             samples,
             points,
             exact,
@@ -88,10 +88,10 @@ impl<'a> Knobs<'a> {
             sky: None,
         };
         let started = Instant::now();
-        let engine = subject.sky(64, 0);
+        let engine = workload.sky(64, 0);
         knobs.sky_ready_s = started.elapsed().as_secs_f64();
         let points = knobs.sky_points();
-        knobs.sky_ray_s = subject.find_open(&engine, &points, budget)?.1 / (64.0 * points.len().max(1) as f64);
+        knobs.sky_ray_s = workload.find_open(&engine, &points, budget)?.1 / (64.0 * points.len().max(1) as f64);
         Some(knobs)
     }
 
@@ -102,7 +102,7 @@ impl<'a> Knobs<'a> {
 
     /// Seconds of the sample as seconds of the page.
     fn scaled(&self, seconds: f64) -> f64 {
-        seconds * self.subject.page.samples.len() as f64 / self.points.len().max(1) as f64
+        seconds * self.workload.page.samples.len() as f64 / self.points.len().max(1) as f64
     }
 
     /// Seconds of the exact engine for a texel.
@@ -112,11 +112,11 @@ impl<'a> Knobs<'a> {
 
     /// Bytes of so many layers of times on the page, as a GPU holds them.
     fn layer_bytes(&self, layers: usize, bits: Bits) -> u64 {
-        self.subject.page.texel_count * layers as u64 * 8 * u64::from(bits.count() / 8)
+        self.workload.page.texel_count * layers as u64 * 8 * u64::from(bits.count() / 8)
     }
 
     fn minutes(&self, errors_t: Vec<f64>) -> Option<ErrorEntry> {
-        let duration_min = self.subject.path().duration_min;
+        let duration_min = self.workload.path().duration_min;
         distribution(errors_t.into_iter().map(|t| t * duration_min).collect())
     }
 
@@ -131,8 +131,8 @@ impl<'a> Knobs<'a> {
 
     /// An engine; `layer_cap` bounds the bytes that its answers take.
     pub fn engine(&mut self, choice: EngineChoice, layer_cap: usize, budget: &Budget) -> Option<Turned> {
-        let engine = choice.engine(&self.subject.tracer, &[self.subject.path().clone()], 1.0);
-        let (found, seconds) = self.timed(|| self.subject.find_lit(engine.as_ref(), &self.points, budget))?;
+        let engine = choice.engine(&self.workload.tracer, &[self.workload.path().clone()], 1.0);
+        let (found, seconds) = self.timed(|| self.workload.solve_visibility(engine.as_ref(), &self.points, budget))?;
         let which = match choice {
             EngineChoice::Rays(count) => Some((0, count)),
             EngineChoice::Bisect(count) => Some((1, count)),
@@ -179,14 +179,14 @@ impl<'a> Knobs<'a> {
         if self.disc.is_none() {
             self.disc = Some(self.disc_of(truth::LANES, DISC_STEP, budget)?.0);
         }
-        let (lanes, paths) = self.subject.lanes(count);
-        let engine = ExactEngine::new(&self.subject.tracer, &paths);
-        let (found, seconds) = self.timed(|| self.subject.find_lit(&engine, &self.points, budget))?;
+        let (lanes, paths) = self.workload.lanes(count);
+        let engine = ExactEngine::new(&self.workload.tracer, &paths);
+        let (found, seconds) = self.timed(|| self.workload.solve_visibility(&engine, &self.points, budget))?;
         let of_texel = found.chunks(lanes.len()).step_by(DISC_STEP).enumerate();
-        let path = self.subject.path();
-        let errors = of_texel.zip(self.disc.iter().flatten()).map(|((k, answers), best)| {
-            difference::apart_t(&difference::of_disc(answers, &lanes, path, start_of(k)), best)
-        });
+        let path = self.workload.path();
+        let errors = of_texel
+            .zip(self.disc.iter().flatten())
+            .map(|((k, answers), best)| metric::apart_t(&metric::of_disc(answers, &lanes, path, start_of(k)), best));
         let errors = errors.collect();
         let most = |lane: usize| found.iter().skip(lane).step_by(lanes.len()).map(|lit| lit.as_slice().len()).max();
         let layers = (0..lanes.len()).map(|lane| most(lane).unwrap_or(0).div_ceil(4).min(layer_cap)).sum();
@@ -200,13 +200,13 @@ impl<'a> Knobs<'a> {
 
     /// What so many lanes see of the disc at every `step`th texel.
     fn disc_of(&self, count: usize, step: usize, budget: &Budget) -> Option<(Vec<Vec<f32>>, f64)> {
-        let (lanes, paths) = self.subject.lanes(count);
-        let engine = ExactEngine::new(&self.subject.tracer, &paths);
+        let (lanes, paths) = self.workload.lanes(count);
+        let engine = ExactEngine::new(&self.workload.tracer, &paths);
         let points: Vec<SurfacePoint> = self.points.iter().step_by(step).copied().collect();
-        let (answers, seconds) = self.subject.find_lit(&engine, &points, budget)?;
-        let path = self.subject.path();
-        let of_texel = |(k, answers): (usize, &[Intervals])| difference::of_disc(answers, &lanes, path, start_of(k));
-        let seen = self.subject.on_threads(|| answers.par_chunks(lanes.len()).enumerate().map(of_texel).collect());
+        let (answers, seconds) = self.workload.solve_visibility(&engine, &points, budget)?;
+        let path = self.workload.path();
+        let of_texel = |(k, answers): (usize, &[Intervals])| metric::of_disc(answers, &lanes, path, start_of(k));
+        let seen = self.workload.on_threads(|| answers.par_chunks(lanes.len()).enumerate().map(of_texel).collect());
         Some((seen, seconds))
     }
 
@@ -214,17 +214,17 @@ impl<'a> Knobs<'a> {
     pub fn sky(&mut self, rays: u32, budget: &Budget) -> Option<Turned> {
         let points = self.sky_points();
         if self.sky.is_none() {
-            let (runs, _) = self.subject.find_open(&self.subject.sky(RAYS, truth::SEED), &points, budget)?;
+            let (runs, _) = self.workload.find_open(&self.workload.sky(RAYS, truth::SEED), &points, budget)?;
             let open = runs.iter().flat_map(|run| run.front.iter().zip(&run.buried));
             self.sky = Some(open.map(|(estimate, &is_buried)| (estimate.open, is_buried)).collect());
         }
-        let engine = self.subject.sky(rays, 0);
-        let (runs, seconds) = self.timed(|| self.subject.find_open(&engine, &points, budget))?;
+        let engine = self.workload.sky(rays, 0);
+        let (runs, seconds) = self.timed(|| self.workload.find_open(&engine, &points, budget))?;
         self.sky_ray_s = seconds / (f64::from(rays) * points.len().max(1) as f64);
         let found = runs.iter().flat_map(|run| &run.front).zip(self.sky.iter().flatten());
         let errors = found.filter(|(_, (_, is_buried))| !is_buried);
         let errors = errors.map(|(estimate, (best, _))| f64::from((estimate.open - best).abs())).collect();
-        let page = &self.subject.page;
+        let page = &self.workload.page;
         let sides = if points.iter().any(|point| point.surface.is_double_sided) { 2 } else { 1 };
         Some(Turned {
             seconds: seconds * page.samples.len() as f64 / points.len().max(1) as f64,
@@ -250,8 +250,8 @@ impl<'a> Knobs<'a> {
         let step = self.samples.len().div_ceil(RUN).div_ceil(SKY_RUNS).max(1);
         let runs = self.samples.chunks(RUN).step_by(step).flat_map(|run| &run[..run.len().min(SKY_RUN)]);
         let point = |sample: &Sample| AmbientPoint {
-            surface: self.subject.point(sample),
-            shading_normal: self.subject.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
+            surface: self.workload.point(sample),
+            shading_normal: self.workload.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
         };
         runs.map(point).collect()
     }

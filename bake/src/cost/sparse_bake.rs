@@ -7,20 +7,20 @@
 //! on the GPU are known, from the layers that these texels need.
 
 use super::budget::Budget;
-use super::played::{self, Blend, Errors, Shown};
-use super::subject::Subject;
+use super::playback::{self, Blend, Errors, Shown};
 use super::truth::{self, Truth};
+use super::workload::Workload;
 use crate::ambient::AmbientPoint;
 use crate::atlas::{self, Atlas, GutterTexel, PageSamples, Sample, SurfacePoint};
 use crate::bake::unwrap_somehow;
 use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_open};
 use crate::progress::Progress;
 use crate::settings::{AmbientRequest, BakeSettings};
-use crate::{BakeError, progress::Stage};
+use crate::{BakeError, progress::BakeStage};
 use std::collections::{HashMap, HashSet};
 
 /// What was found.
-pub(super) struct Around {
+pub(super) struct SparseBake {
     pub errors: Errors,
     pub gpu_bytes: u64,
     /// Texels of all pages that stand for a point.
@@ -29,21 +29,21 @@ pub(super) struct Around {
 
 /// Asks the texels around the points. None if it was stopped.
 pub(super) fn around(
-    subject: &Subject,
+    workload: &Workload,
     truth: &Truth,
     settings: &BakeSettings,
     budget: &Budget,
-) -> Result<Option<Around>, BakeError> {
-    let (mut warnings, scene) = (Vec::new(), subject.scene());
-    let laid_out = subject.on_threads(|| unwrap_somehow(scene, settings, &mut warnings, budget));
+) -> Result<Option<SparseBake>, BakeError> {
+    let (mut warnings, scene) = (Vec::new(), workload.scene());
+    let laid_out = workload.on_threads(|| unwrap_somehow(scene, settings, &mut warnings, budget));
     let (atlas, settings) = match laid_out {
         Ok(laid_out) => laid_out,
         Err(BakeError::Cancelled) => return Ok(None),
         Err(error) => return Err(error),
     };
-    budget.start(Stage::Encode, 0);
-    let read = subject.on_threads(|| Read::new(subject, truth, &atlas, settings.padding_texels));
-    Ok(read.answer(subject, truth, &settings, atlas.texel_count(), budget))
+    budget.start(BakeStage::Encode, 0);
+    let read = workload.on_threads(|| Read::new(workload, truth, &atlas, settings.padding_texels));
+    Ok(read.answer(workload, truth, &settings, atlas.texel_count(), budget))
 }
 
 /// The texels that are read, and by which point.
@@ -56,10 +56,10 @@ struct Read {
 }
 
 impl Read {
-    fn new(subject: &Subject, truth: &Truth, atlas: &Atlas, padding: u32) -> Self {
-        let (scene, geometry) = (subject.scene(), &subject.geometry);
+    fn new(workload: &Workload, truth: &Truth, atlas: &Atlas, padding: u32) -> Self {
+        let (scene, geometry) = (workload.scene(), &workload.geometry);
         let of_pages: Vec<(usize, Blend)> =
-            truth.places.iter().map(|place| played::blend(place, scene, geometry, atlas)).collect();
+            truth.places.iter().map(|place| playback::blend(place, scene, geometry, atlas)).collect();
         let mut read = Self { samples: Vec::new(), blends: vec![Blend::default(); of_pages.len()], texels: 0 };
         // Texels that nothing touches, marked until it is known how many there are that something does.
         const NOTHING: usize = usize::MAX;
@@ -96,31 +96,31 @@ impl Read {
 
     fn answer(
         self,
-        subject: &Subject,
+        workload: &Workload,
         truth: &Truth,
         settings: &BakeSettings,
         page_texels: u64,
         budget: &Budget,
-    ) -> Option<Around> {
-        let lanes = self.sun(subject, settings, budget)?;
+    ) -> Option<SparseBake> {
+        let lanes = self.sun(workload, settings, budget)?;
         let ambient = match &settings.ambient {
-            Some(request) => Some(self.sky(subject, request, budget)?),
+            Some(request) => Some(self.sky(workload, request, budget)?),
             None => None,
         };
         // A page one texel high, with one texel more that nothing touches.
         let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient };
-        let gpu_bytes = played::gpu_bytes(&page, settings.bits) / u64::from(page.width) * page_texels;
-        let shown = Shown { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(subject.path()) };
+        let gpu_bytes = playback::gpu_bytes(&page, settings.bits) / u64::from(page.width) * page_texels;
+        let shown = Shown { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };
         let blends: Vec<(usize, Blend)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
-        let errors = subject.on_threads(|| shown.errors(truth, &blends));
-        Some(Around { errors, gpu_bytes, texels: self.texels })
+        let errors = workload.on_threads(|| shown.errors(truth, &blends));
+        Some(SparseBake { errors, gpu_bytes, texels: self.texels })
     }
 
-    fn sun(&self, subject: &Subject, settings: &BakeSettings, budget: &Budget) -> Option<Vec<LaneMaps>> {
-        let (lanes, paths) = subject.lanes(settings.lane_count);
-        let engine = settings.engine.engine(&subject.tracer, &paths, settings.edge_seconds);
-        let points: Vec<SurfacePoint> = self.samples.iter().map(|sample| subject.point(sample)).collect();
-        let (answers, _) = subject.find_lit(engine.as_ref(), &points, budget)?;
+    fn sun(&self, workload: &Workload, settings: &BakeSettings, budget: &Budget) -> Option<Vec<LaneMaps>> {
+        let (lanes, paths) = workload.lanes(settings.lane_count);
+        let engine = settings.engine.engine(&workload.tracer, &paths, settings.edge_seconds);
+        let points: Vec<SurfacePoint> = self.samples.iter().map(|sample| workload.point(sample)).collect();
+        let (answers, _) = workload.solve_visibility(engine.as_ref(), &points, budget)?;
         let of_lane = |(k, &lane)| {
             let mut encoder = PageEncoder::new(points.len() + 1, settings.bits, settings.layer_cap);
             for (texel, lit) in answers.iter().skip(k).step_by(lanes.len()).enumerate() {
@@ -131,14 +131,14 @@ impl Read {
         Some(lanes.iter().enumerate().map(of_lane).collect())
     }
 
-    fn sky(&self, subject: &Subject, request: &AmbientRequest, budget: &Budget) -> Option<AmbientMaps> {
+    fn sky(&self, workload: &Workload, request: &AmbientRequest, budget: &Budget) -> Option<AmbientMaps> {
         let point = |sample: &Sample| AmbientPoint {
-            surface: subject.point(sample),
-            shading_normal: subject.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
+            surface: workload.point(sample),
+            shading_normal: workload.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
         };
         let points: Vec<AmbientPoint> = self.samples.iter().map(point).collect();
-        let engine = subject.sky(request.estimate.rays, request.estimate.seed);
-        let (runs, _) = subject.find_open(&engine, &points, budget)?;
+        let engine = workload.sky(request.estimate.rays, request.estimate.seed);
+        let (runs, _) = workload.find_open(&engine, &points, budget)?;
         let sides: Vec<[f32; 2]> = runs.iter().flat_map(truth::sides).collect();
         let has_backs = points.iter().any(|point| point.surface.is_double_sided);
         let side = |k: usize| AmbientSide {

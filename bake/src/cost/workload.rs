@@ -4,23 +4,23 @@ use super::budget::Budget;
 use super::load::Load;
 use super::{CostError, CostSettings};
 use crate::BakeError;
-use crate::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimates, find_ambient};
+use crate::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimates, solve_ambient};
 use crate::atlas::{self, Atlas, Sample, SurfacePoint};
 use crate::bake::{Prepared, prepare, unwrap_somehow};
 use crate::maps::Lane;
-use crate::progress::{Progress, Stage};
+use crate::progress::{BakeStage, Progress};
 use crate::scene::{Geometry, Scene, ShadingNormals};
 use crate::settings::BakeSettings;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
-use crate::visibility::{Engine, Intervals, find_lit};
+use crate::visibility::{Engine, Intervals, solve_visibility};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
 /// A scene with all that is made of it once.
-pub(super) struct Subject {
+pub(super) struct Workload {
     /// Where it was read from.
     pub scene_file: PathBuf,
     prepared: Prepared,
@@ -47,7 +47,7 @@ pub(super) struct Page {
     pub samples: Vec<Sample>,
 }
 
-impl Subject {
+impl Workload {
     pub fn new(scene_file: &Path, settings: &CostSettings, budget: &Budget) -> Result<Self, CostError> {
         budget.task("getting ready");
         let started = Instant::now();
@@ -59,7 +59,7 @@ impl Subject {
         let Some(path) = prepared.path.clone() else { return Err(no_sun(&prepared)) };
         let (atlas, asked) = pool.install(|| unwrap_somehow(&prepared.scene, &asked, &mut warnings, budget))?;
         warnings.extend(atlas.warnings.iter().cloned());
-        budget.start(Stage::Bvh, 0);
+        budget.start(BakeStage::Bvh, 0);
         let geometry = Geometry::new(&prepared.scene);
         let tracer = pool.install(|| Tracer::new(&prepared.scene, &geometry));
         let fixed_s = started.elapsed().as_secs_f64();
@@ -143,19 +143,19 @@ impl Subject {
     }
 
     /// When points see the sun: of each point an answer a lane, and the seconds it took. None if it was stopped.
-    pub fn find_lit(
+    pub fn solve_visibility(
         &self,
         engine: &dyn Engine,
         points: &[SurfacePoint],
         budget: &Budget,
     ) -> Option<(Vec<Intervals>, f64)> {
-        budget.start(Stage::Visibility, points.len() as u64);
+        budget.start(BakeStage::Visibility, points.len() as u64);
         let started = Instant::now();
         let told = |count: usize| {
             budget.advance(count as u64);
             !budget.is_cancelled()
         };
-        let (tables, _) = self.watched(|| find_lit(engine, points.len(), |i| points[i], told))?;
+        let (tables, _) = self.watched(|| solve_visibility(engine, points.len(), |i| points[i], told))?;
         let seconds = started.elapsed().as_secs_f64();
         Some((tables.iter().flat_map(|table| table.iter()).collect(), seconds))
     }
@@ -167,14 +167,14 @@ impl Subject {
         points: &[AmbientPoint],
         budget: &Budget,
     ) -> Option<(Vec<Estimates>, f64)> {
-        budget.start(Stage::Ambient, points.len() as u64);
+        budget.start(BakeStage::Ambient, points.len() as u64);
         let started = Instant::now();
         let told = |count: usize| {
             budget.advance(count as u64);
             !budget.is_cancelled()
         };
         let texel = |i: usize, to: &mut Vec<AmbientPoint>| to.push(points[i]);
-        let runs = self.watched(|| find_ambient(engine, points.len(), texel, told))?;
+        let runs = self.watched(|| solve_ambient(engine, points.len(), texel, told))?;
         Some((runs, started.elapsed().as_secs_f64()))
     }
 }

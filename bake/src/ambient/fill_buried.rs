@@ -3,12 +3,12 @@
 //! Nobody sees a texel inside a solid, but a filter at the solid's border reads it: black, it would draw a dark line around
 //! every stone that stands in the ground. So a buried texel beside one that can be seen shows what the darkest such
 //! neighbour does. The darkest, not the nearest or the mean: where a wall is thinner than a texel, the light before it
-//! must not come through to the room behind. Texels deeper inside stay 0.
+//! must not come through to the scratch behind. Texels deeper inside stay 0.
 
 use crate::atlas::PageSize;
 
 /// Which texels are covered, and which of them are buried.
-pub(super) struct Settling {
+pub(super) struct BuriedTexels {
     size: PageSize,
     texels: Vec<State>,
 }
@@ -20,7 +20,7 @@ enum State {
     Buried,
 }
 
-impl Settling {
+impl BuriedTexels {
     pub fn new(size: PageSize) -> Self {
         Self { size, texels: vec![State::Empty; size.texel_count()] }
     }
@@ -53,12 +53,12 @@ mod tests {
     #[test]
     fn buried_texels_show_their_darkest_seen_neighbour_and_deeper_ones_nothing() {
         let size = PageSize { width: 6, height: 1 };
-        let mut settling = Settling::new(size);
+        let mut buried_texels = BuriedTexels::new(size);
         for (texel, is_buried) in [(0, false), (1, true), (2, true), (3, true), (4, false)] {
-            settling.add(texel, is_buried);
+            buried_texels.add(texel, is_buried);
         }
-        assert_eq!(settling.shown_as(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
-        let mut thin = Settling::new(size);
+        assert_eq!(buried_texels.shown_as(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
+        let mut thin = BuriedTexels::new(size);
         [(0, false), (1, true), (2, false)].iter().for_each(|&(texel, is_buried)| thin.add(texel, is_buried));
         assert_eq!(thin.shown_as(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0]), [(1, 2)], "light would come through the wall");
     }

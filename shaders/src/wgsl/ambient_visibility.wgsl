@@ -1,7 +1,7 @@
 // Ambient occlusion, blended by hand: 16-bit integer textures have no filter. A slice for each side.
 @group(1) @binding(2) var ao_map: texture_2d_array<u32>;
 
-fn openness_at(texel: vec2<i32>, side: i32) -> f32 {
+fn ambient_visibility_at(texel: vec2<i32>, side: i32) -> f32 {
     return f32(textureLoad(ao_map, texel, side, 0).x) / 65535.0;
 }
 
@@ -12,7 +12,7 @@ fn openness(page_uv: vec2<f32>, side: i32) -> f32 {
     let weight = place - base;
     let low = clamp(vec2<i32>(base), vec2<i32>(0), last);
     let high = clamp(vec2<i32>(base) + 1, vec2<i32>(0), last);
-    let top = mix(openness_at(low, side), openness_at(vec2<i32>(high.x, low.y), side), weight.x);
-    let bottom = mix(openness_at(vec2<i32>(low.x, high.y), side), openness_at(high, side), weight.x);
+    let top = mix(ambient_visibility_at(low, side), ambient_visibility_at(vec2<i32>(high.x, low.y), side), weight.x);
+    let bottom = mix(ambient_visibility_at(vec2<i32>(low.x, high.y), side), ambient_visibility_at(high, side), weight.x);
     return mix(top, bottom, weight.y);
 }

@@ -5,15 +5,15 @@
 //! knobs' sample, the rest from reading the scene and laying it out, and all of it corrected by how the standard
 //! preset turned out, or else the last bake.
 
-use super::around::around;
 use super::budget::Budget;
-use super::difference::{MOMENTS, distribution};
 use super::knee::knee;
-use super::knobs::{self, Knobs, Turned};
-use super::played;
+use super::metric::{MOMENTS, distribution};
+use super::playback;
 use super::report::{CostRow, How, ReferenceEntry, Sweep};
-use super::subject::Subject;
+use super::sparse_bake::around;
+use super::sweeps::{self, Knobs, Turned};
 use super::truth::{self, Truth};
+use super::workload::Workload;
 use super::{CostError, CostSettings};
 use crate::disk::manifest::{Manifest, StageSeconds};
 use crate::disk::read;
@@ -59,7 +59,7 @@ enum Kind {
 
 /// All measurements of a scene.
 pub(super) struct Jobs<'a> {
-    subject: &'a Subject,
+    workload: &'a Workload,
     settings: &'a CostSettings,
     work_folder: PathBuf,
     budget: &'a Budget<'a>,
@@ -78,13 +78,13 @@ pub(super) struct Jobs<'a> {
 
 impl<'a> Jobs<'a> {
     pub fn new(
-        subject: &'a Subject,
+        workload: &'a Workload,
         settings: &'a CostSettings,
         work_folder: &Path,
         budget: &'a Budget,
     ) -> Result<Self, CostError> {
         let mut jobs = Self {
-            subject,
+            workload,
             settings,
             work_folder: work_folder.to_owned(),
             budget,
@@ -94,15 +94,15 @@ impl<'a> Jobs<'a> {
             baked: Vec::new(),
             correction: 1.2,
             is_settled: false,
-            fixed_s: subject.fixed_s,
+            fixed_s: workload.fixed_s,
         };
-        jobs.knobs = Knobs::new(subject, budget);
+        jobs.knobs = Knobs::new(workload, budget);
         jobs.check_interrupted()?;
         let Some(knobs) = &jobs.knobs else { return Ok(jobs) };
         let a_point_s =
             SCATTERED * (knobs.exact_texel_s() * truth::LANES as f64 + knobs.sky_ray_s * f64::from(truth::RAYS));
         let affordable = (TRUTH_SHARE * budget.seconds() / a_point_s.max(1e-9)) as usize;
-        jobs.truth = Truth::find(subject, affordable.clamp(LEAST_POINTS, MOST_POINTS), budget);
+        jobs.truth = Truth::find(workload, affordable.clamp(LEAST_POINTS, MOST_POINTS), budget);
         jobs.check_interrupted()?;
         Ok(jobs)
     }
@@ -172,7 +172,7 @@ impl<'a> Jobs<'a> {
     fn bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
         let Some(truth) = &self.truth else { return Ok(None) };
         let folder = self.work_folder.join("baked");
-        let manifest = match bake(&self.subject.scene_file, &folder, true, settings, self.budget) {
+        let manifest = match bake(&self.workload.scene_file, &folder, true, settings, self.budget) {
             Ok(report) => report.manifest,
             Err(BakeError::Cancelled) => return Ok(None),
             Err(error @ BakeError::Memory { .. }) => {
@@ -181,14 +181,14 @@ impl<'a> Jobs<'a> {
             Err(error) => return Err(error.into()),
         };
         let set = read::read(&folder)?;
-        let errors = self.subject.on_threads(|| played::errors(&set, truth, self.subject.scene()));
+        let errors = self.workload.on_threads(|| playback::errors(&set, truth, self.workload.scene()));
         // It is removed with the folder around it in any case.
         let _ = std::fs::remove_dir_all(&folder);
         let row = CostRow {
             note: page_note(&manifest, settings),
             seconds: Some(total_s(&manifest.stats.seconds)),
             disk_bytes: Some(manifest.stats.bytes),
-            gpu_bytes: Some(set.pages.iter().map(|page| played::gpu_bytes(page, set.bits)).sum()),
+            gpu_bytes: Some(set.pages.iter().map(|page| playback::gpu_bytes(page, set.bits)).sum()),
             texels: Some(manifest.stats.texels),
             ..self.with_errors(How::Baked, errors?)
         };
@@ -202,7 +202,7 @@ impl<'a> Jobs<'a> {
         if let Some(why) = self.budget.refusal(sample_s) {
             return Ok(Some(CostRow::not_run("", &why)));
         }
-        let Some(found) = around(self.subject, truth, settings, self.budget)? else { return Ok(None) };
+        let Some(found) = around(self.workload, truth, settings, self.budget)? else { return Ok(None) };
         Ok(Some(CostRow {
             note: Some("texels around the points only; time predicted".into()),
             seconds: self.bake_s_of(settings, found.texels as f64),
@@ -212,8 +212,8 @@ impl<'a> Jobs<'a> {
         }))
     }
 
-    fn with_errors(&self, how: How, errors: played::Errors) -> CostRow {
-        let minutes = errors.sun_t.into_iter().map(|t| t * self.subject.path().duration_min).collect();
+    fn with_errors(&self, how: How, errors: playback::Errors) -> CostRow {
+        let minutes = errors.sun_t.into_iter().map(|t| t * self.workload.path().duration_min).collect();
         let open = errors.open.and_then(distribution);
         CostRow { how, note: None, sun_min: distribution(minutes), open, ..CostRow::not_run("", "") }
     }
@@ -266,7 +266,7 @@ impl<'a> Jobs<'a> {
 
     /// About how many texels a bake has.
     fn texels(&self, settings: &BakeSettings) -> f64 {
-        let page = &self.subject.page;
+        let page = &self.workload.page;
         let finer = f64::from(settings.page_size_texels) / f64::from(page.edge_texels);
         page.samples.len() as f64 * finer * finer
     }
@@ -279,17 +279,17 @@ impl<'a> Jobs<'a> {
 
     /// The sweeps with their knees, and what they were measured against.
     pub fn finish(self) -> (Vec<Sweep>, ReferenceEntry) {
-        let page = &self.subject.page;
+        let page = &self.workload.page;
         let reference = ReferenceEntry {
             points: self.truth.as_ref().map_or(0, |truth| truth.places.len() as u64),
             buried_points: self.truth.as_ref().map_or(0, |truth| truth.buried as u64),
-            lanes: self.subject.lanes(truth::LANES).0.len() as u64,
+            lanes: self.workload.lanes(truth::LANES).0.len() as u64,
             moments: MOMENTS as u64,
             point_rays: truth::RAYS.into(),
             page_size_texels: page.edge_texels,
             page_texels: page.samples.len() as u64,
             measured_texels: self.knobs.as_ref().map_or(0, |knobs| knobs.texel_count() as u64),
-            texel_rays: knobs::RAYS.into(),
+            texel_rays: sweeps::RAYS.into(),
         };
         let mut rows = self.jobs;
         let sweeps = SWEEPS.iter().map(|&[id, title, measured_on, meaning]| {
@@ -337,8 +337,11 @@ fn planned(settings: &CostSettings) -> Vec<Job> {
     let mut jobs = Vec::new();
     let mut add = |sweep, curve, rank, name: String, kind| jobs.push(Job { sweep, curve, name, kind, rank, row: None });
     let standard = settings.preset(BakeSettings::standard);
-    let presets: [(&str, fn(_) -> _, u32); 3] =
-        [("draft", BakeSettings::draft, 0), ("standard", BakeSettings::standard, 1), ("final", BakeSettings::last, 20)];
+    let presets: [(&str, fn(_) -> _, u32); 3] = [
+        ("draft", BakeSettings::draft, 0),
+        ("standard", BakeSettings::standard, 1),
+        ("final", BakeSettings::final_quality, 20),
+    ];
     for (name, of, rank) in presets {
         add("presets", "", rank, format!("--preset {name}"), Kind::Bake(Box::new(settings.preset(of))));
     }

@@ -15,7 +15,7 @@ pub(crate) const WIDTH: usize = 16;
 pub(crate) type Points = [[f32; WIDTH]; 3];
 
 /// The hierarchy. Boxes are along axes of the caller's choice. The first node is the root; there is none without triangles.
-pub(crate) struct Wide {
+pub(crate) struct Bvh16 {
     pub nodes: Vec<Node>,
     pub leaves: Vec<Leaf>,
 }
@@ -86,7 +86,7 @@ pub(crate) fn push_far_first<T: Copy>(stack: &mut Vec<T>, first: usize, new: T, 
     stack[at] = new;
 }
 
-impl Wide {
+impl Bvh16 {
     /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {
         let turned = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
@@ -101,10 +101,10 @@ impl Wide {
             corners: &|id| turned(&tracer.corners()[id as usize]),
             tree: &tree,
             order: &order,
-            wide: Self { nodes: Vec::new(), leaves: Vec::new() },
+            bvh: Self { nodes: Vec::new(), leaves: Vec::new() },
         };
         collapse.run();
-        collapse.wide
+        collapse.bvh
     }
 }
 
@@ -127,13 +127,13 @@ fn triangles_below(tree: &[BinaryNode]) -> Vec<u32> {
     below
 }
 
-/// Wide nodes in the making.
+/// Bvh16 nodes in the making.
 struct Collapse<'a> {
     tree: &'a [BinaryNode],
     order: &'a [u32],
     triangles: Vec<u32>,
     corners: &'a dyn Fn(u32) -> [Vec3; 3],
-    wide: Wide,
+    bvh: Bvh16,
 }
 
 impl Collapse<'_> {
@@ -144,9 +144,9 @@ impl Collapse<'_> {
             pending.push((0, None::<(usize, usize)>));
         }
         while let Some((binary, parent)) = pending.pop() {
-            let index = self.wide.nodes.len();
+            let index = self.bvh.nodes.len();
             if let Some((parent, lane)) = parent {
-                self.wide.nodes[parent].child[lane] = Child::Node(index as u32);
+                self.bvh.nodes[parent].child[lane] = Child::Node(index as u32);
             }
             let members = self.open(binary);
             let mut node = Node { count: members.len(), ..Node::default() };
@@ -161,7 +161,7 @@ impl Collapse<'_> {
                     false => pending.push((member, Some((index, lane)))),
                 }
             }
-            self.wide.nodes.push(node);
+            self.bvh.nodes.push(node);
         }
     }
 
@@ -187,8 +187,8 @@ impl Collapse<'_> {
                 leaf.count += 1;
             }
         }
-        self.wide.leaves.push(leaf);
-        Child::Leaf(self.wide.leaves.len() as u32 - 1)
+        self.bvh.leaves.push(leaf);
+        Child::Leaf(self.bvh.leaves.len() as u32 - 1)
     }
 
     /// Up to sixteen descendants that cover a node: the largest are opened first.

@@ -6,8 +6,8 @@ use glam::{DVec2, Vec2};
 
 /// Alpha masks of the triangles that have holes. Empty, and never asked, in a scene without any.
 #[derive(Default)]
-pub(super) struct Cuts {
-    /// In the hierarchy's order: index in `triangles`, or [`Cuts::NONE`]. Empty if no triangle has holes.
+pub(super) struct AlphaMasks {
+    /// In the hierarchy's order: index in `triangles`, or [`AlphaMasks::NONE`]. Empty if no triangle has holes.
     of_triangle: Vec<u32>,
     triangles: Vec<CutTriangle>,
     masks: Vec<Mask>,
@@ -21,7 +21,7 @@ struct CutTriangle {
     cutoff: f32,
     /// Whether the vertices have no alpha of their own.
     is_plain: bool,
-    /// Index in [`Cuts::masks`], if the material has a texture.
+    /// Index in [`AlphaMasks::masks`], if the material has a texture.
     mask: Option<u32>,
 }
 
@@ -120,14 +120,14 @@ fn quadrant(grows: [bool; 2]) -> usize {
     usize::from(grows[0]) + 2 * usize::from(grows[1])
 }
 
-impl Cuts {
+impl AlphaMasks {
     const NONE: u32 = u32::MAX;
 
     pub fn new(scene: &Scene, geometry: &Geometry, flat: &[u32]) -> Self {
         if !scene.has_alpha_cut() {
             return Self::default();
         }
-        let mut cuts = Self { of_triangle: vec![Self::NONE; flat.len()], ..Self::default() };
+        let mut alpha_mask = Self { of_triangle: vec![Self::NONE; flat.len()], ..Self::default() };
         let mut mask_of_material = vec![None; scene.materials.len()];
         for (id, &triangle) in flat.iter().enumerate() {
             let surface = geometry.surface(triangle as usize);
@@ -137,17 +137,17 @@ impl Cuts {
             let texture = material.base_color_texture;
             let mask = texture.map(|texture| {
                 *mask_of_material[mesh.material].get_or_insert_with(|| {
-                    cuts.masks.push(Mask::new(
+                    alpha_mask.masks.push(Mask::new(
                         &scene.images[texture.image],
                         texture.wrap,
                         material.base_color.w,
                         cutoff,
                     ));
-                    cuts.masks.len() as u32 - 1
+                    alpha_mask.masks.len() as u32 - 1
                 })
             });
-            cuts.of_triangle[id] = cuts.triangles.len() as u32;
-            cuts.triangles.push(CutTriangle {
+            alpha_mask.of_triangle[id] = alpha_mask.triangles.len() as u32;
+            alpha_mask.triangles.push(CutTriangle {
                 image_uvs: texture.map_or([Vec2::ZERO; 3], |t| image_uvs(mesh, &t, surface.mesh_triangle)),
                 alphas: vertex_alphas(mesh, surface.mesh_triangle).map(|a| a * material.base_color.w),
                 cutoff,
@@ -155,11 +155,11 @@ impl Cuts {
                 mask,
             });
         }
-        cuts
+        alpha_mask
     }
 
     #[inline]
-    pub fn has_holes(&self, id: usize) -> bool {
+    pub fn has_alpha_mask(&self, id: usize) -> bool {
         self.of_triangle.get(id).is_some_and(|&cut| cut != Self::NONE)
     }
 

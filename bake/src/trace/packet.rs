@@ -12,7 +12,7 @@
 //! passes it within [`CORNER_PADDING`]. What is kept is then asked in `f64`, by the very test that [`Tracer`] uses. So
 //! answers are the tracer's, watertight at shared edges, and do not depend on the width of SIMD.
 
-use super::wide::{Child, Leaf, Node, WIDTH, Wide, bits, first_lanes, push_far_first};
+use super::bvh16::{Bvh16, Child, Leaf, Node, WIDTH, bits, first_lanes, push_far_first};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
 use glam::{DMat3, DVec3};
@@ -25,9 +25,9 @@ const BOX_PADDING: f32 = 1.0 / 256.0;
 const CORNER_PADDING: f32 = 1.0 / 512.0;
 
 /// A hierarchy for rays in all directions. Positions and distances in its methods are bake space, in metres.
-pub struct Scatter<'a> {
+pub struct PacketTracer<'a> {
     tracer: &'a Tracer,
-    wide: Wide,
+    bvh: Bvh16,
     /// For each flat triangle, its index among the tracer's; [`u32::MAX`] if it is not solid.
     id_of_flat: Vec<u32>,
     level: Level,
@@ -35,7 +35,7 @@ pub struct Scatter<'a> {
 
 /// Room that a walk needs, kept from one to the next.
 #[derive(Debug, Default)]
-pub struct ScatterRoom {
+pub struct PacketScratch {
     near: [f32; WIDTH],
     rays: Vec<ShadowRay>,
     /// What rays have yet to go to together, and which of them.
@@ -103,19 +103,19 @@ struct ShadowRay {
     own: u32,
 }
 
-impl<'a> Scatter<'a> {
+impl<'a> PacketTracer<'a> {
     /// Builds over all that blocks light.
     pub fn new(tracer: &'a Tracer) -> Self {
         let padding = BOX_PADDING + tracer.run_up as f32;
         let mut id_of_flat = vec![u32::MAX; tracer.instance.len()];
         tracer.flat.iter().enumerate().for_each(|(id, &flat)| id_of_flat[flat as usize] = id as u32);
-        Self { tracer, wide: Wide::new(tracer, DMat3::IDENTITY, padding), id_of_flat, level: Level::new() }
+        Self { tracer, bvh: Bvh16::new(tracer, DMat3::IDENTITY, padding), id_of_flat, level: Level::new() }
     }
 
     /// Which of up to [`PACKET`] shadow rays something solid stops: a bit set. Rays that go roughly the same way from
     /// neighbouring points are the fastest. `guess` is asked first, and left at something that stopped one of them: the
     /// answer does not depend on it.
-    pub fn occluded(&self, room: &mut ScatterRoom, queries: &[ShadowQuery], guess: &mut Option<Occluder>) -> u32 {
+    pub fn occluded(&self, room: &mut PacketScratch, queries: &[ShadowQuery], guess: &mut Option<Occluder>) -> u32 {
         room.rays.clear();
         room.rays.extend(queries.iter().map(|query| self.ray(query)));
         let mut stopped = 0;
@@ -125,7 +125,7 @@ impl<'a> Scatter<'a> {
             stopped = (1u32 << first) - 1;
         }
         let open = first_lanes(queries.len()) & !stopped;
-        if open != 0 && !self.wide.nodes.is_empty() {
+        if open != 0 && !self.bvh.nodes.is_empty() {
             let level = self.level;
             *guess = None;
             stopped |= dispatch!(level, simd => self.stop_any(simd, room, open, guess));
@@ -145,11 +145,11 @@ impl<'a> Scatter<'a> {
     }
 
     /// For each of up to [`PACKET`] shadow rays, the nearest surface within `reach_m`; for the rest, none.
-    pub fn nearest(&self, room: &mut ScatterRoom, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
+    pub fn nearest(&self, room: &mut PacketScratch, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
         room.rays.clear();
         room.rays.extend(queries.iter().map(|query| self.ray(query)));
         let mut found = [None; PACKET];
-        if !queries.is_empty() && !self.wide.nodes.is_empty() {
+        if !queries.is_empty() && !self.bvh.nodes.is_empty() {
             let reach = reach_m * self.tracer.tracer_from_bake + self.tracer.run_up;
             let level = self.level;
             dispatch!(level, simd => self.find_nearest(simd, room, reach, &mut found));
@@ -172,8 +172,8 @@ impl<'a> Scatter<'a> {
 
     /// Walks for the rays of a bit set, and gives back those that something stops.
     #[inline(always)]
-    fn stop_any<S: Simd>(&self, simd: S, room: &mut ScatterRoom, open: u32, found: &mut Option<Occluder>) -> u32 {
-        let ScatterRoom { rays, shared, children, near, .. } = room;
+    fn stop_any<S: Simd>(&self, simd: S, room: &mut PacketScratch, open: u32, found: &mut Option<Occluder>) -> u32 {
+        let PacketScratch { rays, shared, children, near, .. } = room;
         let mut active = open;
         shared.clear();
         shared.push((Child::ROOT, open));
@@ -184,7 +184,7 @@ impl<'a> Scatter<'a> {
             }
             match child {
                 Child::Node(node) => {
-                    let node = &self.wide.nodes[node as usize];
+                    let node = &self.bvh.nodes[node as usize];
                     let mut met = 0;
                     children.fill(0);
                     for ray in bits(asking) {
@@ -199,7 +199,7 @@ impl<'a> Scatter<'a> {
                     }
                 }
                 Child::Leaf(leaf) => {
-                    let leaf = &self.wide.leaves[leaf as usize];
+                    let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let ray = &rays[index];
                         for lane in bits(leaf_met(simd, leaf, &ray.narrow, f32::INFINITY)) {
@@ -225,11 +225,11 @@ impl<'a> Scatter<'a> {
     fn find_nearest<S: Simd>(
         &self,
         simd: S,
-        room: &mut ScatterRoom,
+        room: &mut PacketScratch,
         reach: f64,
         found: &mut [Option<Nearest>; PACKET],
     ) {
-        let ScatterRoom { rays, sorted, children, near, .. } = room;
+        let PacketScratch { rays, sorted, children, near, .. } = room;
         let mut reach = [reach; PACKET];
         sorted.clear();
         sorted.push(Pending { child: Child::ROOT, met_by: first_lanes(rays.len()), near: 0.0 });
@@ -237,7 +237,7 @@ impl<'a> Scatter<'a> {
             let asking = met_by;
             match child {
                 Child::Node(node) => {
-                    let node = &self.wide.nodes[node as usize];
+                    let node = &self.bvh.nodes[node as usize];
                     let mut met = 0;
                     let mut nearest = f32x16::splat(simd, f32::INFINITY);
                     children.fill(0);
@@ -264,7 +264,7 @@ impl<'a> Scatter<'a> {
                     }
                 }
                 Child::Leaf(leaf) => {
-                    let leaf = &self.wide.leaves[leaf as usize];
+                    let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let (ray, reach, found) = (&rays[index], &mut reach[index], &mut found[index]);
                         for lane in bits(leaf_met(simd, leaf, &ray.narrow, *reach as f32 * FAR_SLACK)) {
@@ -363,7 +363,7 @@ mod tests {
     use glam::{Vec2, Vec3};
 
     /// Stones, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
-    fn packets(ask: impl Fn(&Tracer, &mut Scatter, &[ShadowQuery])) {
+    fn packets(ask: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
         let mut builder = SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0));
         for i in 0..12 {
             let at = Vec3::new((i % 4) as f32 * 2.0 - 3.0, 0.3, (i / 4) as f32 * 2.0 - 2.0);
@@ -373,7 +373,7 @@ mod tests {
         let scene = builder.build();
         let geometry = Geometry::new(&scene);
         let tracer = Tracer::new(&scene, &geometry);
-        let mut scatter = Scatter::new(&tracer);
+        let mut scatter = PacketTracer::new(&tracer);
         let mut state = 5;
         let mut random = || pseudo_random(&mut state);
         for _ in 0..400 {
@@ -402,7 +402,7 @@ mod tests {
                 for count in [PACKET, 5] {
                     let mut guess = None;
                     for _ in 0..2 {
-                        let stopped = scatter.occluded(&mut ScatterRoom::default(), &queries[..count], &mut guess);
+                        let stopped = scatter.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
                         assert_eq!(stopped, expected & first_lanes(count));
                     }
                 }
@@ -415,7 +415,7 @@ mod tests {
         packets(|tracer, scatter, queries| {
             for (level, reach_m) in [(Level::new(), f64::INFINITY), (Level::baseline(), 1.5)] {
                 scatter.level = level;
-                let found = scatter.nearest(&mut ScatterRoom::default(), queries, reach_m);
+                let found = scatter.nearest(&mut PacketScratch::default(), queries, reach_m);
                 for (query, found) in queries.iter().zip(found) {
                     let hit = tracer.closest_hit(query.origin_m, &Direction::new(query.direction));
                     let expected = hit.filter(|hit| hit.distance_m <= reach_m).map(|hit| hit.distance_m);

@@ -76,7 +76,7 @@ impl Defects {
             }
         }
         let is_defect = |(i, hit, is_lit): &(usize, Hit, bool)| {
-            let place = Place::new(shot, moment, is_soft, *i, hit);
+            let place = ReceiverPoint::new(shot, moment, is_soft, *i, hit);
             let pixel_m = hit.distance_m * f64::from(shot.view.pixel_angle_rad);
             // No picture tells edges more finely than its pixels.
             let reach_m = reach_m(place.point_m).max(pixel_m);
@@ -130,7 +130,7 @@ fn is_surface_of(shot: &Shot, pixel: usize, hit: &Hit, depth_m: f64) -> bool {
 }
 
 /// What a pixel shows, and the light that is to reach it.
-struct Place<'a> {
+struct ReceiverPoint<'a> {
     shot: &'a Shot<'a>,
     triangle: u32,
     point_m: DVec3,
@@ -143,7 +143,7 @@ struct Place<'a> {
     spread: f64,
 }
 
-impl<'a> Place<'a> {
+impl<'a> ReceiverPoint<'a> {
     fn new(shot: &'a Shot, moment: &Moment, is_soft: bool, pixel: usize, hit: &Hit) -> Self {
         let geometry = &shot.stage.geometry;
         let front = geometry.normal(hit.triangle as usize);

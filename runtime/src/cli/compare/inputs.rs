@@ -1,10 +1,10 @@
 //! What is compared: sets that are there, or that are baked for as long as it takes.
 
-use super::super::artist::sun_request;
+use super::super::draw::sun_request;
 use super::super::exit::Failure;
 use super::super::terminal::Terminal;
 use super::args::CompareArgs;
-use super::looks::check;
+use super::viewpoints::check;
 use std::collections::BTreeSet;
 use std::path::Path;
 use sunbake::disk::read::read_manifest;
@@ -14,7 +14,7 @@ use sunbake::settings::BakeSettings;
 use sunbake::{BakeError, Prepared};
 use sunbake_runtime::Stage;
 use sunbake_runtime::compare::report::LeftOut;
-use sunbake_runtime::compare::{Contender, SetOnDisk, selected};
+use sunbake_runtime::compare::{SetOnDisk, TechniqueSpec, selected};
 use sunbake_runtime::stage::{MAX_SCENE_BYTES, StageError};
 use tempfile::TempDir;
 
@@ -26,10 +26,10 @@ const NO_DISC: &str = "a light without width has no disc to cut into lanes";
 const PAGE_SIZE_TEXELS: u32 = 2048;
 
 /// What is compared: sets, and the stage that all look at.
-pub struct Field {
+pub struct ComparisonInputs {
     pub sets: Vec<SetOnDisk>,
     pub stage: Stage,
-    pub contenders: Vec<Contender>,
+    pub techniques: Vec<TechniqueSpec>,
     pub left_out: Vec<LeftOut>,
     /// Of the file that was baked.
     pub source_sha256: String,
@@ -37,8 +37,8 @@ pub struct Field {
     _baked: Option<TempDir>,
 }
 
-impl Field {
-    pub fn of(args: &CompareArgs, against: Contender, terminal: &Terminal) -> Result<Self, Failure> {
+impl ComparisonInputs {
+    pub fn of(args: &CompareArgs, against: TechniqueSpec, terminal: &Terminal) -> Result<Self, Failure> {
         let from = &args.source;
         if !from.exists() {
             return Err(Failure::io(format!("{} is not there: check its name", from.display())));
@@ -47,7 +47,7 @@ impl Field {
     }
 
     /// A set as it was baked; fewer bits and lanes are made of those that it has.
-    fn of_set(args: &CompareArgs, against: Contender) -> Result<Self, Failure> {
+    fn of_set(args: &CompareArgs, against: TechniqueSpec) -> Result<Self, Failure> {
         let set = SetOnDisk::read(&args.source).map_err(StageError::Set)?;
         if args.sun.is_given() || args.page_size.is_some() || !args.leave_out.is_empty() {
             return Err(Failure::usage(
@@ -77,30 +77,30 @@ impl Field {
             1 => left_out.push(left("baked:lanes3", "the set has one lane across the sun: bake it with --lanes 3")),
             _ => {}
         }
-        let all = Contender::all(bits, &lane_counts);
-        let contenders = selected(&all, &args.techniques).map_err(Failure::usage)?;
-        if let Contender::Baked(_) = against
+        let all = TechniqueSpec::all(bits, &lane_counts);
+        let techniques = selected(&all, &args.techniques).map_err(Failure::usage)?;
+        if let TechniqueSpec::Baked(_) = against
             && !all.contains(&against)
         {
             return Err(Failure::usage(format!("this set cannot be played back as {against}: give another --against")));
         }
         let stage = Stage::read(&args.source)?.without_lamp().without_times();
-        Ok(Self { sets: vec![set], stage, contenders, left_out, source_sha256: manifest.source.sha256, _baked: None })
+        Ok(Self { sets: vec![set], stage, techniques, left_out, source_sha256: manifest.source.sha256, _baked: None })
     }
 
     /// A scene, baked once for each count of lanes that somebody plays back.
-    fn of_scene(args: &CompareArgs, against: Contender, terminal: &Terminal) -> Result<Self, Failure> {
+    fn of_scene(args: &CompareArgs, against: TechniqueSpec, terminal: &Terminal) -> Result<Self, Failure> {
         if args.scene.is_some() {
             return Err(Failure::usage("--scene is for sets: leave it out"));
         }
-        let all = Contender::all(Bits::Sixteen, &LANES);
-        let mut contenders = selected(&all, &args.techniques).map_err(Failure::usage)?;
+        let all = TechniqueSpec::all(Bits::Sixteen, &LANES);
+        let mut techniques = selected(&all, &args.techniques).map_err(Failure::usage)?;
         let mut left_out = Vec::new();
-        let lanes_of = |one: &Contender| match one {
-            Contender::Baked(playback) => Some(playback.lanes),
+        let lanes_of = |one: &TechniqueSpec| match one {
+            TechniqueSpec::Baked(playback) => Some(playback.lanes),
             _ => None,
         };
-        let mut wanted: BTreeSet<usize> = contenders.iter().chain([&against]).filter_map(lanes_of).collect();
+        let mut wanted: BTreeSet<usize> = techniques.iter().chain([&against]).filter_map(lanes_of).collect();
         let settings = |lane_count: usize| {
             Ok::<_, Failure>(BakeSettings {
                 page_size_texels: args.page_size.unwrap_or(PAGE_SIZE_TEXELS),
@@ -115,13 +115,13 @@ impl Field {
         check(args, &scene, path.as_ref())?;
         if wanted.contains(&3) && path.as_ref().is_some_and(|path| path.angular_radius_rad == 0.0) {
             wanted = BTreeSet::from([1]);
-            contenders.retain(|one| lanes_of(one).is_none_or(|lanes| lanes == 1));
+            techniques.retain(|one| lanes_of(one).is_none_or(|lanes| lanes == 1));
             left_out.push(left("baked:lanes3", NO_DISC));
         }
         if wanted.is_empty() {
             let source_sha256 = scene.source.sha256.clone();
             let stage = Stage::plain(scene, path);
-            return Ok(Self { sets: Vec::new(), stage, contenders, left_out, source_sha256, _baked: None });
+            return Ok(Self { sets: Vec::new(), stage, techniques, left_out, source_sha256, _baked: None });
         }
         drop(scene);
         let desk = tempfile::tempdir().map_err(|e| Failure::io(format!("cannot make a folder to bake into: {e}")))?;
@@ -138,7 +138,7 @@ impl Field {
         let manifest = read_manifest(&sets[0].folder).map_err(StageError::Set)?;
         let stage = Stage::read(&sets[0].folder)?.without_times();
         let source_sha256 = manifest.source.sha256;
-        Ok(Self { sets, stage, contenders, left_out, source_sha256, _baked: Some(desk) })
+        Ok(Self { sets, stage, techniques, left_out, source_sha256, _baked: Some(desk) })
     }
 }
 
