@@ -12,6 +12,7 @@
 pub mod ambient;
 pub mod atlas;
 mod bake;
+#[cfg(feature = "report")]
 pub mod cost;
 pub mod disk;
 pub mod glb;
@@ -21,13 +22,17 @@ mod loss;
 pub mod loss_map;
 pub mod maps;
 pub mod plan;
+#[cfg(feature = "cli")]
 pub mod printing;
 pub mod progress;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod scene;
 pub mod settings;
+#[cfg(feature = "cli")]
 pub mod signals;
 pub mod sun;
+#[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod testing;
 pub mod texels;

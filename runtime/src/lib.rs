@@ -11,6 +11,7 @@
 //! ```
 
 pub mod camera;
+#[cfg(feature = "report")]
 pub mod compare;
 pub mod gpu;
 pub mod image;
@@ -24,6 +25,7 @@ pub mod shot;
 pub mod sides;
 pub mod stage;
 pub mod technique;
+#[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod testing;
 pub mod texture;

@@ -1,13 +1,13 @@
 //! A page's ambient light as files: occlusion for viewers and for playback, bent normals, the sky, and all of them as
 //! numbers.
 
+use super::exr_file::write_exr;
 use super::manifest::{AtlasEntry, SkyMapsEntry};
 use super::write::{SetWriter, WriteError};
 use crate::ambient::{AmbientPage, Side};
 use crate::maps::{AmbientMaps, AmbientSide, Bits};
 use crate::settings::AmbientRequest;
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
-use std::io::{Error, Result, Seek, Write};
+use std::io::{Result, Seek, Write};
 
 type Written<T> = std::result::Result<T, WriteError>;
 
@@ -99,17 +99,12 @@ fn write_numbers(page: &AmbientPage, file: impl Write + Seek) -> Result<()> {
     let mut channels = Vec::new();
     for (prefix, side) in std::iter::once(("", &page.front)).chain(page.back.as_ref().map(|back| ("back.", back))) {
         let Side { open, bent, sky } = side;
-        let mut add = |name: String, plane: &[f32]| {
-            channels.push(AnyChannel::new(name.as_str(), FlatSamples::F32(plane.to_vec())));
-        };
+        let mut add = |name: String, plane: &[f32]| channels.push((name, plane.to_vec()));
         add(format!("{prefix}ao"), open);
         bent.iter().zip(["x", "y", "z"]).for_each(|(plane, axis)| add(format!("{prefix}bent.{axis}"), plane));
         sky.iter().enumerate().for_each(|(k, plane)| add(format!("{prefix}sky.{k}"), plane));
     }
-    let size = (page.size.width as usize, page.size.height as usize);
-    let image = Image::from_channels(size, AnyChannels::sort(channels.into_iter().collect()));
-    // On this thread: a bake takes no more threads than it was given.
-    image.write().non_parallel().to_buffered(file).map_err(Error::other)
+    write_exr([page.size.width, page.size.height], channels, file)
 }
 
 #[cfg(test)]

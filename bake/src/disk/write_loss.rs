@@ -1,10 +1,10 @@
 //! A page's lost minutes as files: a picture for the eye, an OpenEXR of two channels for programs.
 
+use super::exr_file::write_exr;
 use super::manifest::LossMapEntry;
 use super::write::{SetWriter, WriteError};
 use crate::loss_map::LossMap;
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
-use std::io::{Error, Result, Seek, Write};
+use std::io::{Result, Seek, Write};
 
 impl SetWriter {
     /// Writes where page `index` lost minutes and says what the manifest should say of it.
@@ -26,10 +26,6 @@ fn write_picture(map: &LossMap, file: impl Write) -> Result<()> {
 }
 
 fn write_numbers(map: &LossMap, file: impl Write + Seek) -> Result<()> {
-    let channel = |name: &str, minutes| AnyChannel::new(name, FlatSamples::F32(minutes));
-    let channels = [channel("layers", map.by_layers_min()), channel("bits", map.by_bits_min())];
-    let size = (map.width as usize, map.height as usize);
-    let image = Image::from_channels(size, AnyChannels::sort(channels.into_iter().collect()));
-    // On this thread: a bake takes no more threads than it was given.
-    image.write().non_parallel().to_buffered(file).map_err(Error::other)
+    let channels = vec![("layers".into(), map.by_layers_min()), ("bits".into(), map.by_bits_min())];
+    write_exr([map.width, map.height], channels, file)
 }

@@ -1,7 +1,6 @@
 //! Pictures into files.
 
 use super::exit::Failure;
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
 use glam::Vec3;
 use std::path::Path;
 use sunbake_runtime::Raster;
@@ -77,10 +76,9 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 fn write_exr<const N: usize>(path: &Path, size: [u32; 2], channels: [(&str, Vec<f32>); N]) -> Result<(), Failure> {
-    let channels = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, FlatSamples::F32(samples)));
-    let channels = AnyChannels::sort(channels.collect());
-    let image = Image::from_channels((size[0] as usize, size[1] as usize), channels);
-    image.write().to_file(path).map_err(|e| cannot_write(path, &e))
+    let channels = channels.into_iter().map(|(name, samples)| (name.to_owned(), samples)).collect();
+    let write = || sunbake::disk::write_exr(size, channels, std::io::BufWriter::new(std::fs::File::create(path)?));
+    write().map_err(|e| cannot_write(path, &e))
 }
 
 fn write_png(
