@@ -159,7 +159,7 @@ pub struct Material {
 }
 
 /// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Cut`] at one half: what is at least half
-/// opaque casts and shows, what is less does neither (see ARCHITECTURE, "Blended surfaces").
+/// opaque casts and shows, what is less does neither (see docs/decisions.md, "Blended materials").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
     /// Alpha is ignored.
