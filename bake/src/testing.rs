@@ -1,5 +1,7 @@
 //! Scenes made by code, for tests of this crate and of those above it. Not part of the tool.
 
+pub mod atlas;
+
 use crate::scene::{Alpha, Dropped, Image, Instance, Material, Mesh, Node, Scene, Source, TextureRef};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 

@@ -98,19 +98,19 @@ fn flag(name: &str, path: &Path) -> OsString {
     flag
 }
 
-/// `CHROMIUM`, or the first browser of its kind on the path.
+/// What a browser may be called: what `CHROMIUM` says, or the usual names.
+pub(crate) fn names() -> Vec<OsString> {
+    let usual = || ["chromium", "chromium-browser", "google-chrome"].map(OsString::from).to_vec();
+    std::env::var_os("CHROMIUM").map_or_else(usual, |name| vec![name])
+}
+
 fn find_chromium() -> OsString {
-    let answers = |name: &OsString| {
-        let version = Command::new(name).arg("--version").stdin(Stdio::null()).output();
-        version.is_ok_and(|output| output.status.success())
-    };
-    let asked = std::env::var_os("CHROMIUM");
-    let usual = ["chromium", "chromium-browser", "google-chrome"].map(OsString::from);
-    let names = asked.map_or_else(|| usual.to_vec(), |name| vec![name]);
-    names.iter().find(|name| answers(name)).cloned().unwrap_or_else(|| {
+    let found = names().into_iter().find(|name| crate::needs::answers(name));
+    found.unwrap_or_else(|| {
         panic!(
-            "none of {names:?} runs, and reports are tested in a browser: run the tests by tests/run, install Chromium \
-             (Debian: chromium), or name one in CHROMIUM"
+            "none of {:?} runs, and reports are tested in a browser: run tests/setup, install Chromium (Debian: chromium), \
+             or name one in CHROMIUM",
+            names()
         )
     })
 }

@@ -3,8 +3,10 @@
 mod agreement;
 pub mod ambient;
 pub mod browser;
+pub mod compare_command;
 pub mod compared;
 pub mod engines;
+pub mod needs;
 mod oracle;
 pub mod paths;
 
@@ -112,22 +114,6 @@ pub fn asked_for(variable: &str, ordinarily: usize) -> usize {
     asked.map_or(ordinarily, |text| text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no number")))
 }
 
-/// Where the shared scenes lie, if they are here: `SUNBAKE_SHARED`, or `shared` beside the repository.
-pub fn shared_folder() -> Option<PathBuf> {
-    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from);
-    folder.join("scenes").is_dir().then_some(folder)
-}
-
-/// A shared scene, or a line that says that its test did nothing for want of it.
-pub fn shared_scene(name: &str) -> Option<PathBuf> {
-    let file = shared_folder().map(|folder| folder.join("scenes").join(name)).filter(|file| file.is_file());
-    if file.is_none() {
-        eprintln!("not tested: the shared scene {name} is not on this machine (set SUNBAKE_SHARED)");
-    }
-    file
-}
-
 /// Turns triangles over.
 pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
     triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
@@ -201,14 +187,20 @@ fn are_near(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     a.len() == b.len() && both.map(|(a, b)| (a - b).abs()).all(|off_t| off_t <= 1.001 * CODE_STEP_T)
 }
 
-/// Runs the `sunbake` command of this build.
-pub fn sunbake_command() -> Command {
+/// The file of a command, `sunbake` or `sunplay`. Where the whole workspace was built, as `tests/run` does, it lies beside the
+/// tests' folder. Else cargo builds it first.
+pub fn built_program(name: &str) -> PathBuf {
     let mut folder = std::env::current_exe().expect("a test has a file");
     folder.pop();
     if folder.ends_with("deps") {
         folder.pop();
     }
-    Command::new(folder.join(format!("sunbake{}", std::env::consts::EXE_SUFFIX)))
+    let file = folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
+    if !(needs::is_set("SUNBAKE_WORKSPACE_IS_BUILT") && file.is_file()) {
+        let built = Command::new(env!("CARGO")).args(["build", "-q", "--workspace", "--bin", name]).status();
+        assert!(built.is_ok_and(|status| status.success()), "cargo cannot build {name}");
+    }
+    file
 }
 
 /// Standard error as text.

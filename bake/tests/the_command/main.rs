@@ -7,8 +7,6 @@ mod a_bake_that_stops_leaves_the_old_set_or_none;
 mod ambient_light_is_baked_as_told;
 mod any_day_at_any_place_bakes;
 mod cost_is_measured_as_told;
-#[cfg(unix)]
-mod every_file_at_hand_ends_well;
 mod it_minds_its_manners;
 mod lamps_are_baked_as_told;
 mod lanes_and_loss_maps_are_written_as_told;

@@ -1,9 +1,9 @@
 //! What an atlas promises, on scenes built by code.
 
-use super::check::{bake, bake_and_check};
 use super::scenes::{cuboid, hills, lit_quad, once, scene, sphere, triangles};
 use crate::atlas::{Atlas, AtlasError, AtlasSettings, Density, LayoutOrigin, Placement, build};
 use crate::scene::{Mesh, Scene};
+use crate::testing::atlas::{bake, bake_and_check};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 
 fn settings(density: Density, page_size_texels: u32) -> AtlasSettings {

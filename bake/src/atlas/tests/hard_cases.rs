@@ -1,16 +1,16 @@
 //! The hard cases of baking that the atlas decides: B3, B4, B7, B9, B11, B12, B16.
 
-use super::check::{Baked, bake, bake_and_check};
 use super::scenes::{cuboid, hills, lit_quad, mesh, once, scene, sphere, triangles};
 use crate::atlas::{AtlasSettings, Density, LayoutOrigin, surface_point};
 use crate::scene::{Mesh, Scene};
+use crate::testing::atlas::{CheckedAtlas, bake, bake_and_check};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
 
 fn settings(page_size_texels: u32) -> AtlasSettings {
     AtlasSettings { density: Density::Pages(1), page_size_texels, ..AtlasSettings::default() }
 }
 
-fn covered(baked: &Baked) -> usize {
+fn covered(baked: &CheckedAtlas) -> usize {
     baked.pages.iter().map(|p| p.samples.len()).sum()
 }
 

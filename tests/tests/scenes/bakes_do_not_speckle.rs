@@ -1,22 +1,31 @@
 //! Hard cases B3 and B5 on shared scenes: cities far from the origin, and a house whose faces are doubled.
 
+use libtest_mimic::Trial;
 use std::collections::HashMap;
 use std::path::Path;
 use sunbake::disk::read::{BakedSet, read};
 use sunbake::progress::Silent;
 use sunbake::settings::BakeSettings;
 use sunbake::texels::{Texel, draw};
-use sunbake_tests::{bake_scene, quick, share_that_differs, shared_scene};
+use sunbake_tests::needs::{Need, of_scene, shared, trial};
+use sunbake_tests::{bake_scene, quick, share_that_differs};
+use tempfile::TempDir;
 
 fn settings() -> BakeSettings {
     BakeSettings { page_size_texels: 512, ..quick() }
 }
 
-fn bake(name: &str, folder: &Path) -> Option<BakedSet> {
-    let file = shared_scene(name)?;
-    let target = folder.join("set");
-    sunbake::bake(&file, &target, true, &settings(), &Silent).unwrap_or_else(|error| panic!("{name}: {error}"));
-    Some(read(&target).unwrap_or_else(|error| panic!("{name}: {error}")))
+/// A set, and the folder that it lies in.
+struct BakedFolder {
+    set: BakedSet,
+    _folder: TempDir,
+}
+
+fn bake(file: &Path) -> BakedFolder {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let target = folder.path().join("set");
+    sunbake::bake(file, &target, true, &settings(), &Silent).unwrap_or_else(|error| panic!("{error}"));
+    BakedFolder { set: read(&target).unwrap_or_else(|error| panic!("{error}")), _folder: folder }
 }
 
 /// Covered texels that disagree with every neighbour in their plane about whether it is noon's sun they see, as a share
@@ -43,27 +52,19 @@ fn speckle(set: &BakedSet, t: f64) -> f64 {
 }
 
 /// B3: vertices in map coordinates, which `f32` holds to 3 cm, bake as cleanly as the same city under a node.
-#[test]
-fn a_city_in_map_coordinates_bakes_without_speckle() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    for city in ["delft", "zurich"] {
-        let Some(node) = bake(&format!("delft_3d/{city}_node.glb"), folder.path()) else { return };
-        for t in [0.15, 0.5, 0.85] {
-            let clean = speckle(&node, t);
-            let raw = bake(&format!("delft_3d/{city}_raw.glb"), folder.path()).expect("it lies beside the other");
-            let found = speckle(&raw, t);
-            println!("{city} at {t}: {clean:.5} of the texels stand alone under a node, {found:.5} in map coordinates");
-            assert!(clean < 0.01 && found < clean + 0.005, "{city} at {t}: {found} against {clean}");
-        }
+fn a_city_in_map_coordinates_does_not_speckle(under_node: &Path, raw: &Path) {
+    let [under_node, raw] = [under_node, raw].map(bake);
+    for t in [0.15, 0.5, 0.85] {
+        let [clean, found] = [&under_node, &raw].map(|baked| speckle(&baked.set, t));
+        println!("at {t}: {clean:.5} of the texels stand alone under a node, {found:.5} in map coordinates");
+        assert!(clean < 0.01 && found < clean + 0.005, "at {t}: {found} against {clean}");
     }
 }
 
 /// B3: the same city, at the origin and under its node's translation, gives the same maps.
-#[test]
-fn a_city_under_a_node_bakes_the_maps_of_the_city_at_the_origin() {
-    let Some(file) = shared_scene("delft_3d/zurich_node.glb") else { return };
+fn a_city_under_a_node_bakes_the_maps_of_the_city_at_the_origin(file: &Path) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let far = sunbake::scene::load(&file, &sunbake::scene::LoadLimits::default()).expect("it loads");
+    let far = sunbake::scene::load(file, &sunbake::scene::LoadLimits::default()).expect("it loads");
     let mut near = far.clone();
     for node in &mut near.nodes {
         node.parent_from_node.w_axis = glam::DVec4::W;
@@ -78,13 +79,31 @@ fn a_city_under_a_node_bakes_the_maps_of_the_city_at_the_origin() {
 }
 
 /// B5: a house of which 2,506 triangles are there twice.
-#[test]
-fn a_house_with_doubled_faces_does_not_speckle() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let Some(house) = bake("pc_house/house.glb", folder.path()) else { return };
+fn coincident_faces_do_not_speckle(file: &Path) {
+    let house = bake(file);
     for t in [0.2, 0.5, 0.8] {
-        let found = speckle(&house, t);
-        println!("house at {t}: {found:.5} of the texels stand alone");
+        let found = speckle(&house.set, t);
+        println!("at {t}: {found:.5} of the texels stand alone");
         assert!(found < 0.01, "{found} at {t}");
     }
+}
+
+pub fn trials() -> Vec<Trial> {
+    let in_map_coordinates = |city: &str| {
+        let files = ["node", "raw"].map(|form| format!("scenes/delft_3d/{city}_{form}.glb"));
+        let needs = files.iter().map(|file| Need::shared(file)).collect();
+        let [under_node, raw] = files.map(|file| shared(&file));
+        let name = format!("a_city_in_map_coordinates_does_not_speckle::{city}");
+        trial(&name, needs, move || a_city_in_map_coordinates_does_not_speckle(&under_node, &raw))
+    };
+    vec![
+        in_map_coordinates("delft"),
+        in_map_coordinates("zurich"),
+        of_scene(
+            "a_city_under_a_node_bakes_the_maps_of_the_city_at_the_origin",
+            "delft_3d/zurich_node.glb",
+            a_city_under_a_node_bakes_the_maps_of_the_city_at_the_origin,
+        ),
+        of_scene("coincident_faces_do_not_speckle", "pc_house/house.glb", coincident_faces_do_not_speckle),
+    ]
 }

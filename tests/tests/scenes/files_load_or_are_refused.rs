@@ -1,44 +1,18 @@
-//! Every file of the Khronos validator's test corpus, and every shared scene, goes through `load` without a panic; and
-//! what loads is written as `scene.glb` and read back as the same scene.
+//! Every file of the Khronos validator's test corpus, and every shared scene, is loaded without a panic; and what loads is
+//! written as `scene.glb` and read back as the same scene.
 //!
-//! The files are not part of the repository. They are looked for in `$SUNBAKE_SHARED`, else beside the workspace. With
-//! `$SUNBAKE_KEEP_GLB` set to a folder, the written files stay there, for the Khronos validator to look at.
+//! With `SUNBAKE_KEEP_GLB` set to a folder, the written files stay there, for the Khronos validator to look at.
 
+use crate::scene_files;
 use glam::Vec2;
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-    time::Instant,
-};
-use sunbake::{
-    atlas::{Layout, LayoutOrigin},
-    glb::write_glb,
-    scene::{LoadError, LoadLimits, Mesh, Scene, load},
-};
-
-fn shared(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("SUNBAKE_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
-    let folder = root.join(folder);
-    if !folder.is_dir() {
-        eprintln!("skipped: shared scenes absent ({} is no folder; set SUNBAKE_SHARED)", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
-fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> =
-        std::fs::read_dir(folder).expect("readable").map(|e| e.expect("entry").path()).collect();
-    entries.sort();
-    for path in entries {
-        if path.is_dir() {
-            scene_files(&path, found);
-        } else if path.extension().is_some_and(|e| e == "gltf" || e == "glb") {
-            found.push(path);
-        }
-    }
-}
+use libtest_mimic::Trial;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use sunbake::atlas::{Layout, LayoutOrigin};
+use sunbake::glb::write_glb;
+use sunbake::scene::{LoadError, LoadLimits, Mesh, Scene, load};
+use sunbake_tests::needs::{Need, shared, trial};
 
 /// A layout that splits nothing.
 fn plain_layout(mesh: &Mesh) -> Layout {
@@ -81,14 +55,11 @@ fn kind(error: &LoadError) -> String {
     debug.split([' ', '{', '(']).next().unwrap_or_default().to_owned()
 }
 
-#[test]
-fn every_file_of_the_validator_corpus_loads_or_is_refused() {
-    let Some(folder) = shared("corpora/gltf_validator_test") else { return };
-    let mut files = Vec::new();
-    scene_files(&folder, &mut files);
+fn validator_files_load_or_are_refused(folder: &Path) {
+    let files = scene_files(folder);
     let mut table: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for path in &files {
-        let name = path.strip_prefix(&folder).expect("inside").display().to_string();
+        let name = path.strip_prefix(folder).expect("inside").display().to_string();
         let outcome = match load(path, &LoadLimits::default()) {
             Ok(scene) => {
                 assert_same(&scene, &rewrite(&scene, &name.replace('/', "_")), &name);
@@ -122,13 +93,9 @@ const CORPUS: [(&str, usize); 9] = [
     ("Version", 5),
 ];
 
-#[test]
-fn every_shared_scene_loads_or_is_refused_by_name_and_comes_back_from_its_scene_glb() {
-    let Some(folder) = shared("scenes") else { return };
-    let mut files = Vec::new();
-    scene_files(&folder, &mut files);
-    for path in &files {
-        let name = path.strip_prefix(&folder).expect("inside").display().to_string();
+fn shared_scenes_load_or_are_refused(folder: &Path) {
+    for path in &scene_files(folder) {
+        let name = path.strip_prefix(folder).expect("inside").display().to_string();
         let start = Instant::now();
         match load(path, &LoadLimits::default()) {
             Ok(scene) => {
@@ -150,4 +117,19 @@ fn every_shared_scene_loads_or_is_refused_by_name_and_comes_back_from_its_scene_
             Err(error) => println!("{name}: {error}"),
         }
     }
+}
+
+pub fn trials() -> Vec<Trial> {
+    let of_folder = |name: &str, folder: &str, test: fn(&Path)| {
+        let path = shared(folder);
+        trial(name, vec![Need::shared(folder)], move || test(&path))
+    };
+    vec![
+        of_folder(
+            "validator_files_load_or_are_refused",
+            "corpora/gltf_validator_test",
+            validator_files_load_or_are_refused,
+        ),
+        of_folder("shared_scenes_load_or_are_refused", "scenes", shared_scenes_load_or_are_refused),
+    ]
 }

@@ -1,9 +1,10 @@
-//! The page of a report in a real browser: its controls do what they say, its canvas shows what it holds, light and
-//! colours are those of the renderer, and nothing comes from outside. Needs Chromium, and fails without one.
+//! The page of a report: its controls do what they say, its canvas shows the pictures that it holds, light and colours are
+//! those of the renderer, and nothing comes from the network. The probe is shown able to fail: each fault is caught.
 
 use glam::Vec3;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
+use libtest_mimic::Trial;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use sunbake_runtime::Raster;
@@ -11,14 +12,15 @@ use sunbake_runtime::compare::visibility_difference;
 use sunbake_runtime::light::{codes_from_display, display_from_light};
 use sunbake_runtime::sheet::heat_map;
 use sunbake_tests::browser::{Verdict, probe};
+use sunbake_tests::needs::{Need, trial};
 
 macro_rules! viewer_file {
     ($name:literal) => {
-        include_str!(concat!("../../runtime/src/compare/report/", $name))
+        include_str!(concat!("../../../runtime/src/compare/report/", $name))
     };
 }
 
-const SHELL: &str = include_str!("../src/browser/shell.html");
+const SHELL: &str = include_str!("../../src/browser/shell.html");
 const STYLE: &str = viewer_file!("viewer.css");
 const VIEWER: &str = viewer_file!("viewer.html");
 const SCRIPT: &str = concat!(viewer_file!("pixels.js"), viewer_file!("viewer.js"), viewer_file!("controls.js"));
@@ -174,7 +176,6 @@ impl Page {
     }
 }
 
-#[test]
 fn every_control_does_what_it_says() {
     let found = Page::new().probed();
     assert_eq!(found.problems, [""; 0]);
@@ -185,7 +186,6 @@ fn every_control_does_what_it_says() {
     assert!(found.checks > 200, "{}", found.checks);
 }
 
-#[test]
 fn a_missing_or_broken_picture_is_caught() {
     let mut page = Page::new();
     page.pictures["frames"][4]["seen"][1] = Value::Null;
@@ -197,13 +197,11 @@ fn a_missing_or_broken_picture_is_caught() {
     silent.assert_caught(&["the page does not say that the picture of 1 is missing"]);
 }
 
-#[test]
 fn a_swapped_picture_is_caught() {
     let page = Page::new().with("frame.seen?.[choice]", "frame.seen?.[0]");
     page.assert_caught(&["volumes chosen on the left: the canvas does not show the picture of 1"]);
 }
 
-#[test]
 fn an_error_of_a_script_is_caught() {
     let page = Page::new().with("<h1>", "<script>nothing.of.the.kind()</script><h1>");
     page.assert_caught(&["nothing is not defined"]);
@@ -212,7 +210,6 @@ fn an_error_of_a_script_is_caught() {
         .assert_caught(&["no viewer"]);
 }
 
-#[test]
 fn what_comes_from_outside_is_caught() {
     let page = Page::new().with("<h1>", "<img alt=\"\" src=\"https://example.invalid/a.png\"><h1>");
     page.assert_caught(&[
@@ -221,7 +218,6 @@ fn what_comes_from_outside_is_caught() {
     ]);
 }
 
-#[test]
 fn controls_that_do_nothing_are_caught() {
     let page = Page::new()
         .with("showDivider();\n  followInAddress();\n  paint();", "")
@@ -231,14 +227,26 @@ fn controls_that_do_nothing_are_caught() {
 }
 
 /// Frames that are asked for late take less long.
-#[test]
 fn an_early_frame_that_comes_late_is_caught() {
     let late = "await new Promise((done) => setTimeout(done, 100 * (2 - asked.time)));";
     Page::new().with("if (ticket !== newest) return;", late).assert_caught(&["after quick moves of the time"]);
 }
 
-#[test]
 fn another_tone_or_heat_is_caught() {
     let page = Page::new().with("EXPOSURE = 0.62", "EXPOSURE = 0.65").with("[72, 24, 102]", "[72, 24, 112]");
     page.assert_caught(&["picture of 0 at time 0 is", "difference of 0 at time 0 is"]);
+}
+
+pub fn trials() -> Vec<Trial> {
+    let all: [(&str, fn()); 8] = [
+        ("every_control_does_what_it_says", every_control_does_what_it_says),
+        ("a_missing_or_broken_picture_is_caught", a_missing_or_broken_picture_is_caught),
+        ("a_swapped_picture_is_caught", a_swapped_picture_is_caught),
+        ("an_error_of_a_script_is_caught", an_error_of_a_script_is_caught),
+        ("what_comes_from_outside_is_caught", what_comes_from_outside_is_caught),
+        ("controls_that_do_nothing_are_caught", controls_that_do_nothing_are_caught),
+        ("an_early_frame_that_comes_late_is_caught", an_early_frame_that_comes_late_is_caught),
+        ("another_tone_or_heat_is_caught", another_tone_or_heat_is_caught),
+    ];
+    all.map(|(name, test)| trial(name, vec![Need::browser()], test)).into()
 }

@@ -1,12 +1,15 @@
-//! The Khronos validator's 372 test files and every shared scene, at draft: no panic, no hang, at most 4 GiB, and whatever
-//! bakes passes the Khronos validator. A table says what each did.
+//! The command bakes every file at draft quality, or refuses it: no panic, no hang, at most 4 GiB of memory. What it writes
+//! passes the Khronos validator. A table says what each file came to. Needs `ulimit`, so it runs on Unix alone.
 
-use super::tools::{SUNBAKE, gas_station};
+use crate::scene_files;
+use libtest_mimic::Trial;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use sunbake_tests::built_program;
+use sunbake_tests::needs::{Need, gas_station, shared, trial, validator_folder, workspace};
 
 /// Seconds of processor time that a file may take: a busy machine is no hang.
 const CPU_S: u64 = 120;
@@ -34,30 +37,11 @@ impl std::fmt::Display for Row {
     }
 }
 
-fn shared(name: &str) -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    let folder = std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join(name);
-    if !folder.is_dir() {
-        eprintln!("not tested: {} is not on this machine (set SUNBAKE_SHARED)", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
-/// All .glb and .gltf below a folder, the largest first, so that no long one starts last.
-fn scenes_below(folder: &Path) -> Vec<PathBuf> {
-    let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
-    while let Some(folder) = folders.pop() {
-        for path in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == "glb" || e == "gltf") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort_by_key(|path| (std::cmp::Reverse(path.metadata().map_or(0, |m| m.len())), path.clone()));
-    found
+/// The files below a folder, the largest first, so that no long one starts last.
+fn largest_first(folder: &Path) -> Vec<PathBuf> {
+    let mut files = scene_files(folder);
+    files.sort_by_key(|path| std::cmp::Reverse(path.metadata().map_or(0, |m| m.len())));
+    files
 }
 
 fn bake(file: &Path, root: &Path, target: PathBuf) -> Row {
@@ -67,7 +51,7 @@ fn bake(file: &Path, root: &Path, target: PathBuf) -> Row {
     );
     let stderr = target.with_extension("stderr");
     let mut command = Command::new("sh");
-    command.args(["-c", &script, SUNBAKE]).arg(file).arg(&target).stdout(Stdio::null());
+    command.args(["-c", &script]).arg(built_program("sunbake")).arg(file).arg(&target).stdout(Stdio::null());
     command.stderr(std::fs::File::create(&stderr).expect("a file"));
     let started = Instant::now();
     let mut child = command.spawn().expect("the command starts");
@@ -141,17 +125,11 @@ fn check(rows: &[Row]) -> BTreeMap<i32, usize> {
 
 /// Every scene.glb and vertices.glb that was written has no errors for the Khronos validator. Its warnings are printed.
 fn validate(rows: &[Row]) {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let installed = workspace.join("target/gltf-validator");
-    assert!(
-        installed.join("node_modules/gltf-validator").is_dir(),
-        "gltf-validator is not installed in target/: run the tests by tests/run, which sets it up"
-    );
     let baked: Vec<&Row> = rows.iter().filter(|row| row.code == Some(0)).collect();
     let mut command = Command::new("node");
-    command.arg(workspace.join("tests/validate.mjs")).arg(installed);
+    command.arg(workspace().join("tests/validate.mjs")).arg(validator_folder());
     command.args(baked.iter().flat_map(|row| ["scene.glb", "vertices.glb"].map(|file| row.set.join(file))));
-    let output = command.output().expect("node is missing: install it, and run the tests by tests/run");
+    let output = command.output().expect("node runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let reports: Vec<serde_json::Value> =
         String::from_utf8(output.stdout).unwrap().lines().map(|l| serde_json::from_str(l).unwrap()).collect();
@@ -169,28 +147,24 @@ fn validate(rows: &[Row]) {
     println!("{} of scene.glb and vertices.glb pass the Khronos validator", reports.len());
 }
 
-#[test]
-fn the_khronos_test_files() {
-    let Some(folder) = shared("corpora/gltf_validator_test") else { return };
-    let files = scenes_below(&folder);
+/// Test files of the Khronos validator that can be read, and draw nothing. The others are refused for what they test.
+const EMPTY: usize = 335;
+
+fn validator_files_are_refused(folder: &Path) {
+    let files = largest_first(folder);
     assert_eq!(files.len(), 372);
     let sets = tempfile::tempdir().unwrap();
-    let rows = bake_all(&files, &folder, sets.path());
+    let rows = bake_all(&files, folder, sets.path());
     let counts = check(&rows);
     assert_eq!(counts, BTreeMap::from([(3, 372)]), "none of them draws a triangle");
     let empty = rows.iter().filter(|row| row.first_line.contains("draws no triangles")).count();
     println!("{empty} of them are understood, and draw no triangles");
-    assert_eq!(empty, KHRONOS_EMPTY);
+    assert_eq!(empty, EMPTY);
 }
 
-/// Khronos test files that can be read, and draw nothing. The others are refused for what they test.
-const KHRONOS_EMPTY: usize = 335;
-
-#[test]
-fn the_shared_scenes() {
-    let Some(folder) = shared("scenes") else { return };
+fn shared_scenes_bake_or_are_refused(folder: &Path) {
     let sets = tempfile::tempdir().unwrap();
-    let rows = bake_all(&scenes_below(&folder), &folder, sets.path());
+    let rows = bake_all(&largest_first(folder), folder, sets.path());
     let counts = check(&rows);
     validate(&rows);
     let refused: Vec<_> = rows.iter().filter(|row| row.code != Some(0)).map(|row| row.file.as_str()).collect();
@@ -201,11 +175,23 @@ fn the_shared_scenes() {
     );
 }
 
-#[test]
-fn our_own_scene() {
+fn our_gas_station_bakes() {
     let file = gas_station();
     let sets = tempfile::tempdir().unwrap();
     let rows = bake_all(std::slice::from_ref(&file), file.parent().unwrap(), sets.path());
     assert_eq!(check(&rows), BTreeMap::from([(0, 1)]));
     validate(&rows);
+}
+
+pub fn trials() -> Vec<Trial> {
+    let corpus = "corpora/gltf_validator_test";
+    vec![
+        trial("validator_files_are_refused", vec![Need::shared(corpus)], move || {
+            validator_files_are_refused(&shared(corpus));
+        }),
+        trial("shared_scenes_bake_or_are_refused", vec![Need::shared("scenes"), Need::validator()], || {
+            shared_scenes_bake_or_are_refused(&shared("scenes"));
+        }),
+        trial("our_gas_station_bakes", vec![Need::validator()], our_gas_station_bakes),
+    ]
 }

@@ -1,21 +1,23 @@
-//! Hard case I7: random texels of the shared scenes and of our own, against brute force in `f64` with 65,536 suns a path.
+//! Hard case I7: random texels of real scenes, against brute force in `f64` with 65,536 suns a path.
 //!
-//! A few texels a scene by default; `SUNBAKE_TEXELS=1000 tests/run -E 'test(real_scenes)' --no-capture` tries a thousand
-//! and prints the table.
+//! Nine texels a scene by default. `SUNBAKE_TEXELS=1000 tests/run scenes -E 'test(brute_force)' --no-capture` tries a thousand,
+//! and prints a line a scene.
 
-use std::path::{Path, PathBuf};
+use libtest_mimic::Trial;
+use std::path::Path;
 use std::time::Instant;
 use sunbake::atlas::{self, AtlasError, AtlasSettings, Density, SurfacePoint};
 use sunbake::scene::{LoadLimits, load};
 use sunbake::sun::SunPath;
 use sunbake::visibility::lit_at;
 use sunbake_tests::engines::{EXACT, FINDS_ALL};
+use sunbake_tests::needs::{of_gas_station, of_scene};
 use sunbake_tests::paths::{Random, day_at, keyed};
-use sunbake_tests::{Agreement, Oracle, Traced, asked_for, shared_scene};
+use sunbake_tests::{Agreement, Oracle, Traced, asked_for};
 
 const SUNS: usize = 65_536;
 
-/// Shared scenes: cities near and far from the origin, foliage, thin things, machines, doubled faces.
+/// Cities near and far from the origin, foliage, thin things, machines, doubled faces.
 const SHARED: [&str; 13] = [
     "osrf_city/osrf_city.glb",
     "littlest_tokyo/littlest_tokyo.glb",
@@ -67,14 +69,14 @@ fn compare(here: &Traced, count: usize) -> Agreement {
     all
 }
 
-fn row(file: &Path, count: usize) -> Agreement {
+/// Hard case I7.
+fn random_texels_agree_with_brute_force(file: &Path) {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let scene = load(file, &LoadLimits::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let here = Traced::new(scene);
     let started = Instant::now();
-    let found = compare(&here, count);
+    let found = compare(&Traced::new(scene), asked_for("SUNBAKE_TEXELS", 9));
     println!(
-        "{name:<24}{:>8}{:>10}{:>8}{:>16}{:>11}{:>8}{:>9.1} s",
+        "{name}: {} texels, {} k suns, {} edges; they disagree about {} suns beside an edge, {} elsewhere, {} spells; {:.1} s",
         found.points,
         found.suns >> 10,
         found.edges,
@@ -83,20 +85,14 @@ fn row(file: &Path, count: usize) -> Agreement {
         found.missed,
         started.elapsed().as_secs_f64()
     );
-    found
+    assert!(found.edges > 0, "there is nothing to compare: {found:?}");
+    // An engine that is blind to short spells is wrong where they are, and only there.
+    assert!(!FINDS_ALL || (found.elsewhere, found.missed) == (0, 0), "{found:?}");
+    assert!(found.furthest_t <= EXACT.blind_t + 1.0 / SUNS as f64, "{found:?}");
 }
 
-#[test]
-fn random_texels_of_real_scenes_agree_with_brute_force() {
-    let count = asked_for("SUNBAKE_TEXELS", 9);
-    println!("                          texels   k suns   edges  beside an edge  elsewhere  missed     time");
-    let own = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
-    let mut all = Agreement::default();
-    for file in std::iter::once(own).chain(SHARED.iter().filter_map(|name| shared_scene(name))) {
-        all.add(&row(&file, count));
-    }
-    assert!(all.edges >= 2 * count as u64, "there is hardly anything to compare: {all:?}");
-    // An engine that is blind to short spells is wrong where they are, and only there.
-    assert!(!FINDS_ALL || (all.elsewhere, all.missed) == (0, 0), "{all:?}");
-    assert!(all.furthest_t <= EXACT.blind_t + 1.0 / SUNS as f64, "{all:?}");
+pub fn trials() -> Vec<Trial> {
+    let claim = "random_texels_agree_with_brute_force";
+    let shared = SHARED.iter().map(|scene| of_scene(claim, scene, random_texels_agree_with_brute_force));
+    shared.chain([of_gas_station(claim, random_texels_agree_with_brute_force)]).collect()
 }

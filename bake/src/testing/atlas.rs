@@ -1,4 +1,4 @@
-//! What must hold of every atlas, by brute force.
+//! What must hold of every atlas, checked by brute force that shares no code with what it checks.
 
 use crate::atlas::{Atlas, AtlasSettings, PageSamples, build, gutter, sample_page, surface_point};
 use crate::scene::{Geometry, Scene};
@@ -8,16 +8,20 @@ use glam::DVec2;
 const HAIR: f64 = 0.02;
 
 /// An atlas with its samples and gutters, and which sample each texel reads.
-pub struct Baked {
+pub struct CheckedAtlas {
+    /// The atlas.
     pub atlas: Atlas,
+    /// The scene's triangles.
     pub geometry: Geometry,
+    /// The samples of each page.
     pub pages: Vec<PageSamples>,
     /// For each page and texel, the sample that it shows.
     pub shown: Vec<Vec<Option<u32>>>,
 }
 
-pub fn bake(scene: &Scene, settings: &AtlasSettings) -> Baked {
-    let atlas = build(scene, settings, &|_| true).unwrap();
+/// Builds an atlas and takes its samples. Panics where a gutter texel is covered by a triangle.
+pub fn bake(scene: &Scene, settings: &AtlasSettings) -> CheckedAtlas {
+    let atlas = build(scene, settings, &|_| true).expect("the atlas fits");
     let geometry = Geometry::new(scene);
     let pages: Vec<_> = (0..atlas.pages.len()).map(|page| sample_page(scene, &geometry, &atlas, page as u32)).collect();
     let show = |(samples, &size): (&PageSamples, &crate::atlas::PageSize)| {
@@ -31,11 +35,11 @@ pub fn bake(scene: &Scene, settings: &AtlasSettings) -> Baked {
         shown
     };
     let shown = pages.iter().zip(&atlas.pages).map(show).collect();
-    Baked { atlas, geometry, pages, shown }
+    CheckedAtlas { atlas, geometry, pages, shown }
 }
 
-/// Bakes, and checks everything that must hold whatever the scene.
-pub fn bake_and_check(scene: &Scene, settings: &AtlasSettings) -> Baked {
+/// Builds an atlas, and checks what must hold of every scene.
+pub fn bake_and_check(scene: &Scene, settings: &AtlasSettings) -> CheckedAtlas {
     let baked = bake(scene, settings);
     baked.samples_lie_on_their_triangles(scene);
     baked.no_texel_has_two_instances(scene);
@@ -43,7 +47,7 @@ pub fn bake_and_check(scene: &Scene, settings: &AtlasSettings) -> Baked {
     baked
 }
 
-impl Baked {
+impl CheckedAtlas {
     /// TexelTriangle of every triangle on its page, in texels: page, instance, flat index, corners.
     pub fn triangles<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = (usize, usize, u32, [DVec2; 3])> + 'a {
         let drawn = (0..scene.instances.len()).filter(|&i| !self.atlas.placements[i].is_empty());
