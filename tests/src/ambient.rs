@@ -18,8 +18,8 @@ pub fn ambient_at(traced: &Traced, points: &[AmbientPoint], settings: AmbientSet
     (runs.into_iter().flat_map(|run| run.front).collect(), rays)
 }
 
-/// Openness at each of these points.
-pub fn openness(traced: &Traced, points: &[AmbientPoint], settings: AmbientSettings) -> Vec<f64> {
+/// Ambient visibility at each of these points: 1 where nothing hides the hemisphere.
+pub fn ambient_visibility(traced: &Traced, points: &[AmbientPoint], settings: AmbientSettings) -> Vec<f64> {
     let (estimates, _) = ambient_at(traced, points, settings);
     estimates.iter().map(|estimate| f64::from(estimate.open)).collect()
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use sunbake::ambient::{AmbientPoint, AmbientSettings, harmonics};
 use sunbake::testing::{SceneBuilder, block, floor, icosphere};
 use sunbake_tests::Traced;
-use sunbake_tests::ambient::{ambient_at, flat, openness, rays, rms, share_of_polygon};
+use sunbake_tests::ambient::{ambient_at, ambient_visibility, flat, rays, rms, share_of_polygon};
 
 /// Half the edge of what stands for an endless plane, in metres; what is looked at is a metre or so from it.
 const ENDLESS: f32 = 4000.0;
@@ -31,7 +31,7 @@ impl Case {
     }
 
     fn errors(&self, settings: AmbientSettings) -> Vec<f64> {
-        let found = openness(&self.traced, &self.points, settings);
+        let found = ambient_visibility(&self.traced, &self.points, settings);
         found.iter().zip(&self.expected).map(|(found, expected)| found - expected).collect()
     }
 }
@@ -93,7 +93,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
-fn openness_is_what_geometry_says() {
+fn ambient_visibility_is_what_geometry_says() {
     for case in cases() {
         let errors = case.errors(rays(256));
         let worst = errors.iter().fold(0.0f64, |worst, error| worst.max(error.abs()));
@@ -161,9 +161,9 @@ fn one_hard_texel_among_easy_ones_is_not_passed_over() {
         _ => DVec3::new(900.0, 0.0, 0.1 * i as f64),
     };
     let points: Vec<AmbientPoint> = (0..4096).map(|i| flat(traced.point_at(place(i), 0))).collect();
-    let truth = openness(&traced, &points[7..8], rays(65_536))[0];
+    let truth = ambient_visibility(&traced, &points[7..8], rays(65_536))[0];
     for error in [0.05, 0.02] {
-        let found = openness(&traced, &points, AmbientSettings { error: Some(error), ..rays(4096) });
+        let found = ambient_visibility(&traced, &points, AmbientSettings { error: Some(error), ..rays(4096) });
         let hard: Vec<f64> = found.iter().skip(7).step_by(16).map(|open| (open - truth).abs()).collect();
         let within = hard.iter().filter(|off| **off <= error).count() as f64 / hard.len() as f64;
         println!("to {error}: {within:.3} of the hard ones are within");
@@ -192,18 +192,18 @@ fn a_closed_box_is_dark_and_with_a_distance_only_its_corners_are() {
             }
         };
         let points: Vec<AmbientPoint> = (0..240).map(inside).collect();
-        assert!(openness(&traced, &points, rays(256)).iter().all(|&open| open == 0.0));
+        assert!(ambient_visibility(&traced, &points, rays(256)).iter().all(|&open| open == 0.0));
         let reach = 1.2;
-        let found = openness(&traced, &points, AmbientSettings { distance_m: Some(reach), ..rays(256) });
+        let found = ambient_visibility(&traced, &points, AmbientSettings { distance_m: Some(reach), ..rays(256) });
         for (point, found) in points.iter().zip(found) {
-            let expected = open_in_box(point.surface.position_m, point.shading_normal, half.as_dvec3(), reach);
+            let expected = visibility_in_box(point.surface.position_m, point.shading_normal, half.as_dvec3(), reach);
             assert!((found - expected).abs() < 0.02, "{found} for {expected}");
         }
     }
 }
 
-/// Openness inside a box within a distance, by a fine rule over the disc under the hemisphere.
-fn open_in_box(from: DVec3, normal: DVec3, half: DVec3, reach: f64) -> f64 {
+/// Ambient visibility inside a box within a distance, by a fine rule over the disc under the hemisphere.
+fn visibility_in_box(from: DVec3, normal: DVec3, half: DVec3, reach: f64) -> f64 {
     let (across, up) = normal.any_orthonormal_pair();
     let (rings, spokes) = (200, 200);
     let mut hidden = 0.0;
@@ -239,8 +239,10 @@ fn a_convex_solid_on_the_ground_sees_the_sky_by_how_far_it_leans() {
                 (0..POINTS).map(|i| flat(traced.point(triangle, [0.2 + 0.001 * i as f64, 0.3]))).collect();
             assert!(points[0].surface.normal.y >= -1e-6);
             let expected = (1.0 + lean.to_radians().cos()) / 2.0;
-            let errors =
-                openness(&traced, &points, rays(256)).into_iter().map(|open| open - expected).collect::<Vec<_>>();
+            let errors = ambient_visibility(&traced, &points, rays(256))
+                .into_iter()
+                .map(|open| open - expected)
+                .collect::<Vec<_>>();
             assert!(rms(errors.iter().copied()) < BOUND[1], "{lean}: {}", rms(errors.iter().copied()));
         }
     }
@@ -256,7 +258,7 @@ fn a_round_thing_alone_reads_one_whatever_its_facets() {
             AmbientPoint { shading_normal: (surface.position_m + traced.scene.centre_m).normalize(), surface }
         };
         let points: Vec<AmbientPoint> = (0..1000).map(point).collect();
-        assert!(openness(&traced, &points, rays(64)).iter().all(|&open| open == 1.0), "level {level}");
+        assert!(ambient_visibility(&traced, &points, rays(64)).iter().all(|&open| open == 1.0), "level {level}");
     }
 }
 
@@ -328,7 +330,7 @@ fn symmetric_scenes_read_alike_on_both_sides() {
             let (x, z) = if swap { (z, x) } else { (x, z) };
             flat(traced.point_at(DVec3::new(sign_x * x, 0.0, sign_z * z), 0))
         };
-        openness(&traced, &(0..512).map(place).collect::<Vec<_>>(), rays(256))
+        ambient_visibility(&traced, &(0..512).map(place).collect::<Vec<_>>(), rays(256))
     };
     let one = read(1.0, 1.0, false);
     for (sign_x, sign_z, swap) in [(-1.0, 1.0, false), (1.0, -1.0, false), (1.0, 1.0, true), (-1.0, -1.0, true)] {
