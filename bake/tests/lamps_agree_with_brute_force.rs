@@ -353,7 +353,7 @@ fn shadows_shorter_than_a_step_are_found() {
     assert!(ends[2] - ends[1] < 1.0 / STEPS as f64);
 }
 
-/// A block casts the same shadow wherever the scene lies.
+/// B4: a block casts the same shadow wherever the scene lies.
 #[test]
 fn size_and_place_do_not_matter() {
     for scale in [1e-3f32, 1.0, 1e4] {

@@ -59,6 +59,7 @@ fn from_above(stage: &Stage) -> Shot<'_> {
     Shot::new(stage, view(stage, DVec3::new(0.3, 6.0, 0.2), DVec3::new(0.3, 0.0, 0.2), SIZE))
 }
 
+/// A1.
 #[test]
 fn an_empty_scene_is_all_sky() {
     let gpu = gpu();
@@ -68,6 +69,7 @@ fn an_empty_scene_is_all_sky() {
     }
 }
 
+/// A1.
 #[test]
 fn a_scene_without_casters_is_all_lit_and_one_without_a_sun_is_not() {
     let gpu = gpu();
@@ -81,6 +83,7 @@ fn a_scene_without_casters_is_all_lit_and_one_without_a_sun_is_not() {
     }
 }
 
+/// A1.
 #[test]
 fn a_caster_outside_the_picture_shades_it() {
     let gpu = gpu();
@@ -91,6 +94,7 @@ fn a_caster_outside_the_picture_shades_it() {
     }
 }
 
+/// A1.
 #[test]
 fn casters_alone_leave_the_sky_alone() {
     let gpu = gpu();
@@ -100,6 +104,7 @@ fn casters_alone_leave_the_sky_alone() {
     }
 }
 
+/// A2.
 #[test]
 fn suns_at_the_horizon_overhead_and_along_axes_give_numbers_and_light_nothing_from_below() {
     let gpu = gpu();
@@ -117,6 +122,7 @@ fn suns_at_the_horizon_overhead_and_along_axes_give_numbers_and_light_nothing_fr
     }
 }
 
+/// A3.
 #[test]
 fn a_scene_a_million_metres_away_looks_the_same() {
     let gpu = gpu();
@@ -163,6 +169,7 @@ fn leaf() -> Scene {
         .build()
 }
 
+/// A4.
 #[test]
 fn a_leaf_casts_and_shows_its_cut_out_and_not_its_card() {
     let gpu = gpu();

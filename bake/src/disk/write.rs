@@ -187,6 +187,7 @@ mod tests {
         writer.finish(&manifest(atlas, bits))
     }
 
+    /// B15.
     #[test]
     fn what_is_written_is_read_bit_for_bit() {
         for bits in [Bits::Eight, Bits::Sixteen] {
@@ -200,6 +201,7 @@ mod tests {
         }
     }
 
+    /// O1.
     #[test]
     fn a_stopped_bake_leaves_the_old_set_or_none() {
         let folder = tempfile::tempdir().unwrap();
@@ -218,6 +220,7 @@ mod tests {
         assert!(read::read(&target).is_ok());
     }
 
+    /// O1.
     #[test]
     fn force_replaces_a_set_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();

@@ -114,6 +114,7 @@ mod tests {
             .fold(f64::INFINITY, f64::min)
     }
 
+    /// B14.
     #[test]
     fn the_loss_at_the_cap_is_the_smallest_possible() {
         let mut state = 1;

@@ -88,6 +88,7 @@ mod tests {
         (stored_intervals(&page.finish(), 0, bits), loss)
     }
 
+    /// B15.
     #[test]
     fn a_texel_lit_all_day_and_one_never_lit_survive() {
         for bits in [Bits::Eight, Bits::Sixteen] {
@@ -109,6 +110,7 @@ mod tests {
         }
     }
 
+    /// B15.
     #[test]
     fn light_shorter_than_a_code_is_lost_and_accounted_for() {
         let (stored, loss) = through(Bits::Eight, &[[0.5001, 0.5002]]);
@@ -116,6 +118,7 @@ mod tests {
         assert!((loss.quantised_t - 0.0001).abs() < 1e-12);
     }
 
+    /// B15.
     #[test]
     fn a_shadow_shorter_than_a_code_leaves_the_light_whole() {
         let mut page = PageEncoder::new(1, Bits::Eight, 1);

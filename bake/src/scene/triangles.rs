@@ -112,6 +112,7 @@ mod tests {
         }
     }
 
+    /// B7.
     #[test]
     fn bad_triangles_are_dropped_and_counted_by_reason() {
         let positions = [

@@ -313,6 +313,7 @@ mod tests {
         crate::testing::icosphere(level)
     }
 
+    /// I1.
     #[test]
     fn no_ray_slips_out_of_a_closed_sphere() {
         let triangles = sphere(4);
@@ -366,6 +367,7 @@ mod tests {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
     }
 
+    /// I2.
     #[test]
     fn a_ray_in_a_triangles_plane_or_from_its_corner_gives_no_nan() {
         let triangle = [Vec3::ZERO, Vec3::X, Vec3::Z];

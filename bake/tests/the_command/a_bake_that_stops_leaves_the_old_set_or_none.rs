@@ -26,6 +26,7 @@ fn send(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
+/// O1.
 #[test]
 fn a_killed_bake_leaves_the_old_set_whole() {
     let desk = Desk::new();
@@ -40,6 +41,7 @@ fn a_killed_bake_leaves_the_old_set_whole() {
     }
 }
 
+/// O1.
 #[test]
 fn an_interrupted_bake_takes_back_what_it_made() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {

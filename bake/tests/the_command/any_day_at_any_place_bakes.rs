@@ -14,6 +14,7 @@ fn minutes(manifest: &Value) -> f64 {
     manifest["path"]["duration_min"].as_f64().expect("a path")
 }
 
+/// B2.
 #[test]
 fn days_without_sunset_last_24_hours() {
     for (place, date) in [("80,20", "2026-06-21"), ("90,0", "2026-06-21"), ("-90,0", "2026-12-21")] {
@@ -24,6 +25,7 @@ fn days_without_sunset_last_24_hours() {
     }
 }
 
+/// B2.
 #[test]
 fn days_without_sunrise_bake_without_a_sun() {
     for (place, date) in [("80,20", "2026-12-21"), ("90,0", "2026-12-21"), ("-90,0", "2026-06-21")] {
@@ -41,12 +43,14 @@ fn days_without_sunrise_bake_without_a_sun() {
     }
 }
 
+/// B2.
 #[test]
 fn the_equator_at_equinox_has_twelve_hours() {
     let manifest = day(&["--place", "0,0", "--date", "2026-03-20"]);
     assert!((minutes(&manifest) - 720.0).abs() < 1.0, "{}", minutes(&manifest));
 }
 
+/// B2.
 #[test]
 fn both_sides_of_the_date_line_are_a_day_apart() {
     let start = |place| day(&["--place", place, "--date", "2026-06-21"])["path"]["utc"][0].as_str().unwrap().to_owned();
@@ -54,6 +58,7 @@ fn both_sides_of_the_date_line_are_a_day_apart() {
     assert!(west.starts_with("2026-06-20T18:") && east.starts_with("2026-06-21T18:"), "{west} {east}");
 }
 
+/// B2.
 #[test]
 fn a_leap_day_is_a_day() {
     let manifest = day(&["--place", "48,16", "--date", "2028-02-29", "--utc-offset", "1"]);
@@ -61,6 +66,7 @@ fn a_leap_day_is_a_day() {
     assert!((600.0..700.0).contains(&minutes(&manifest)));
 }
 
+/// B2.
 #[test]
 fn a_window_may_cross_midnight() {
     let manifest =

@@ -112,6 +112,7 @@ fn a_result_that_cannot_be_printed_is_a_failure() {
     run.fails("a full disk", 2, &["cannot print", "stdout"]);
 }
 
+/// O1.
 #[test]
 fn a_set_is_replaced_only_by_force() {
     let desk = Desk::new();

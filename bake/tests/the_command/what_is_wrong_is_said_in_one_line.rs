@@ -181,6 +181,7 @@ fn a_folder_that_cannot_be_written_is_refused_before_anything_is_spent() {
     assert_eq!(desk.left(), ["letter.txt"], "folders made on the way stay only if they hold a set");
 }
 
+/// O1.
 #[cfg(unix)]
 #[test]
 fn a_disk_that_fills_up_leaves_nothing() {

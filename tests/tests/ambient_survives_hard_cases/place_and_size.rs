@@ -48,6 +48,7 @@ fn b4_a_scene_of_any_size_bakes_the_same_map() {
     }
 }
 
+/// B17.
 #[test]
 fn the_same_bake_is_the_same_bytes_on_any_number_of_threads() {
     let scene = still_life(DMat4::from_rotation_translation(Quat::from_rotation_y(0.3).as_dquat(), DVec3::X));

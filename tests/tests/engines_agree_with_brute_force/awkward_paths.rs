@@ -31,6 +31,7 @@ fn points(here: &Traced, random: &mut Random, count: usize) -> Vec<sunbake::atla
     (0..count).map(|_| point()).collect()
 }
 
+/// I4.
 #[test]
 fn days_keys_and_turns_of_every_kind_agree() {
     let mut random = Random::new(6);

@@ -24,6 +24,7 @@ fn sphere(random: &mut Random) -> Vec<[Vec3; 3]> {
     icosphere(4).iter().map(|t| t.map(|v| (turn * v.as_dvec3()).as_vec3())).collect()
 }
 
+/// I1.
 #[test]
 fn no_light_enters_a_closed_sphere() {
     let mut random = Random::new(1);
@@ -41,7 +42,7 @@ fn inside(here: &Traced, random: &mut Random) -> SurfacePoint {
     here.observer(random.cube() * 0.57, random.direction(), PEDESTAL)
 }
 
-/// A hundred thousand points, of which every hundred share a path: neighbours seed each other, as they do in a bake.
+/// I1: a hundred thousand points, of which every hundred share a path: neighbours seed each other, as they do in a bake.
 #[test]
 fn no_light_enters_a_closed_sphere_at_any_of_very_many_points() {
     let mut random = Random::new(9);
@@ -59,7 +60,7 @@ fn no_light_enters_a_closed_sphere_at_any_of_very_many_points() {
     assert_eq!(lit.sum::<usize>(), 100_000);
 }
 
-/// Suns that pass exactly through a corner or along an edge of the sphere.
+/// I1: suns that pass exactly through a corner or along an edge of the sphere.
 #[test]
 fn no_light_enters_along_a_shared_edge() {
     let mut random = Random::new(2);
@@ -95,6 +96,7 @@ fn behind(path: &SunPath, origin: DVec3, outline: &[DVec3]) -> Intervals {
     planes.fold(Intervals::always(), |behind, normal| behind.intersection(&path.above_plane(normal)))
 }
 
+/// I1.
 #[test]
 fn a_hole_lights_just_while_the_sun_is_in_it() {
     let mut random = Random::new(3);
@@ -123,7 +125,7 @@ fn a_hole_lights_just_while_the_sun_is_in_it() {
     assert!(long_enough >= 60, "only {long_enough} holes let in light for long");
 }
 
-/// A needle 1e-3 wide and 2 m tall at 50 m, and a sun at 30 degrees that passes behind it in 0.3 seconds.
+/// I6: a needle 1e-3 wide and 2 m tall at 50 m, and a sun at 30 degrees that passes behind it in 0.3 seconds.
 #[test]
 fn a_needle_hides_the_sun_for_a_third_of_a_second() {
     let (elevation, distance_m) = (30f64.to_radians(), 50.0);

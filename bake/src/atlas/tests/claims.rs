@@ -36,6 +36,7 @@ fn every_texel_has_one_owner_and_every_triangle_reads_its_own() {
     }
 }
 
+/// B17.
 #[test]
 fn the_same_scene_gives_the_same_bytes_at_any_thread_count() {
     let run = |threads: usize| {
@@ -193,6 +194,7 @@ fn layouts_of_single_meshes_get_rectangles_beside_unwrapped_ones() {
     assert_eq!(atlas.layouts[2].origin, LayoutOrigin::Unwrapped);
 }
 
+/// B16.
 #[test]
 fn islands_of_the_file_that_would_share_texels_are_unwrapped_anew() {
     // Four hundred squares with a gap of a thousandth between them: fine at 4096 texels, not at 128.

@@ -29,6 +29,7 @@ const CLEAR: [u8; 4] = [9, 9, 9, 0];
 const HALF: [u8; 4] = [9, 9, 9, 128];
 const SOLID: [u8; 4] = [9, 9, 9, 255];
 
+/// B13.
 #[test]
 fn blended_surfaces_are_cut_at_one_half_and_are_air_where_nothing_reaches_it() {
     let blend = || json!({ "alphaMode": "BLEND" });
@@ -40,6 +41,7 @@ fn blended_surfaces_are_cut_at_one_half_and_are_air_where_nothing_reaches_it() {
     assert_eq!(alpha_of(json!({}), 0.1, &[CLEAR]), Alpha::Opaque, "OPAQUE ignores alpha");
 }
 
+/// B13.
 #[test]
 fn masks_keep_their_cutoff_and_the_ends_of_its_range_mean_what_they_say() {
     let mask = |cutoff: f32| json!({ "alphaMode": "MASK", "alphaCutoff": cutoff });

@@ -101,6 +101,7 @@ fn quantised_positions_are_read_normalised_or_not_and_strided() {
     }
 }
 
+/// B3.
 #[test]
 fn map_coordinates_keep_their_millimetres_through_node_translations() {
     let mut b = Builder::triangle(json!({ "translation": [2682808.123, 408.5, -1247654.321] }));
@@ -115,6 +116,7 @@ fn map_coordinates_keep_their_millimetres_through_node_translations() {
     assert!(scene.instances.iter().all(|i| i.bake_from_object.w_axis.truncate().length() < 2.0));
 }
 
+/// B3.
 #[test]
 fn a_scene_moved_by_a_million_metres_is_the_same_in_bake_space() {
     let at = |x: f64, z: f64| {
@@ -125,6 +127,7 @@ fn a_scene_moved_by_a_million_metres_is_the_same_in_bake_space() {
     assert_eq!(at(0.5, 0.25), at(1e6 + 0.5, -3e6 + 0.25));
 }
 
+/// B12.
 #[test]
 fn a_mesh_under_many_nodes_is_kept_once_and_a_mesh_under_none_not_at_all() {
     let mut b = Builder::triangle(json!({}));
@@ -137,6 +140,7 @@ fn a_mesh_under_many_nodes_is_kept_once_and_a_mesh_under_none_not_at_all() {
     assert_eq!((scene.meshes.len(), scene.instances.len(), scene.nodes.len()), (1, 160, 160));
 }
 
+/// B11.
 #[test]
 fn fronts_stay_fronts_under_mirrors_scales_and_shears() {
     let shear = [1.0, 0.0, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.25, 0.75, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
@@ -170,6 +174,7 @@ fn nodes_without_volume_are_left_out_with_all_below_them() {
     assert!(alone.contains("draws no triangles") && alone.contains("singular"), "{alone}");
 }
 
+/// B4.
 #[test]
 fn small_and_large_scenes_are_read_alike() {
     for size in [1e-4, 1.0, 1e4] {
@@ -179,6 +184,7 @@ fn small_and_large_scenes_are_read_alike() {
     }
 }
 
+/// B7.
 #[test]
 fn bad_triangles_are_counted_and_the_rest_is_kept() {
     let mut b = Builder::new();

@@ -97,6 +97,7 @@ fn a_plane_square_to_the_axis_is_all_or_nothing() {
     assert_eq!(times(&arc(0.0, [-9.0, 9.0]), DVec3::Z), [[0.0, 1.0]], "a plane that holds the arc is not above it");
 }
 
+/// I3.
 #[test]
 fn a_tangent_plane_touches_without_nan() {
     for declination in [-1.3f64, -0.4, 0.0, 0.4, 1.3] {

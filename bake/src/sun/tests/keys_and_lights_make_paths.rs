@@ -99,6 +99,7 @@ fn lights_that_are_no_sun_are_refused() {
     assert!(matches!(fixed_light(DVec3::Y, f64::NAN), Err(LightError::Path(_))));
 }
 
+/// B1.
 #[test]
 fn suns_at_the_horizon_the_zenith_and_along_the_axes_are_finite_and_none_is_lit_below() {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];

@@ -19,6 +19,7 @@ fn assert_follows_ephemeris(request: &DayRequest) {
     }
 }
 
+/// B2.
 #[test]
 fn polar_day_runs_from_midnight_to_midnight() {
     for latitude in [70.0, 78.2, 89.9, 90.0] {
@@ -33,6 +34,7 @@ fn polar_day_runs_from_midnight_to_midnight() {
     }
 }
 
+/// B2.
 #[test]
 fn polar_night_says_how_high_the_sun_came() {
     for (latitude, date) in [(70.0, "2026-12-21"), (90.0, "2026-12-21"), (-80.0, "2026-06-21"), (-90.0, "2026-06-21")] {
@@ -69,6 +71,7 @@ fn days_around_the_end_of_the_polar_night_and_day_never_fail() {
     assert!(outcomes.iter().all(|count| *count > 10), "{outcomes:?}");
 }
 
+/// B2.
 #[test]
 fn both_sides_of_the_date_line_share_one_sun() {
     let east = path(&DayRequest { utc_offset_h: Some(12.0), ..request(-17.0, 180.0, "2028-02-29") });
@@ -108,6 +111,7 @@ fn clocks_far_from_the_suns_own_still_give_one_whole_day() {
     }
 }
 
+/// B2.
 #[test]
 fn a_window_across_midnight_is_one_path() {
     let request = DayRequest { window: Some([1320.0, 120.0]), ..request(70.0, 25.0, "2028-02-29") };

@@ -204,6 +204,7 @@ mod tests {
         }
     }
 
+    /// I3.
     #[test]
     fn a_plane_and_its_back_share_their_ends_exactly() {
         let mut state = 11;

@@ -236,6 +236,7 @@ mod tests {
         answers
     }
 
+    /// B17.
     #[test]
     fn wider_simd_changes_no_bit() {
         let widest = answers(Level::new);
