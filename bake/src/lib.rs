@@ -8,6 +8,10 @@
 //!                        ^
 //!                sun, lamp, trace
 //! ```
+//!
+//! A module imports only what lies below it, in this order: `scene`, `sun` and `lamp`; `trace`; `atlas`; `visibility` and
+//! `ambient`; `maps`; `settings`; `disk` and `glb`; `bake` with `plan`; `cost` and `cli`. [`intervals`] lies below them
+//! all.
 
 pub mod ambient;
 pub mod atlas;
@@ -17,6 +21,7 @@ pub mod cost;
 pub mod disk;
 pub mod glb;
 pub mod heat;
+pub mod intervals;
 pub mod lamp;
 mod loss;
 pub mod loss_map;

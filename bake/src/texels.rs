@@ -1,7 +1,7 @@
 //! Covered texels of a set with all that a second ray tracer needs to check them: where the point is, which plane it
 //! lies in, where rays start, and what is stored.
 
-use crate::atlas::{self, Atlas, Sample};
+use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_open, decode_signed, stored_intervals};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
@@ -65,7 +65,7 @@ pub struct TexelLane {
 /// Draws `count` covered texels (all, if there are fewer), in page and row order. The same seed draws the same ones.
 pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
     let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
-    let atlas = Atlas::of_set(&scene, &set.manifest);
+    let atlas = set.manifest.atlas(&scene);
     let geometry = Geometry::new(&scene);
     let tracer = Tracer::new(&scene, &geometry);
     let covered: Vec<(usize, Sample)> = (0..set.pages.len())

@@ -4,8 +4,8 @@
 
 use crate::light::{Daylight, LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
-use std::ops::{Add, Mul};
 use sunbake::ambient::harmonics;
+use sunbake::atlas::{Footprint, PageSize};
 use sunbake::maps::{
     AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, hard_visibility, soft_visibility,
 };
@@ -64,28 +64,41 @@ impl<'a> Page<'a> {
         Self { maps, bits, variant: page_variant(maps, bits, radius_rad) }
     }
 
-    fn disc_visibility(&self, texel: IVec2, moment: &Moment) -> f32 {
-        let index = texel.y as usize * self.maps.width as usize + texel.x as usize;
+    fn disc_visibility(&self, texel: usize, moment: &Moment) -> f32 {
         let mut seen = 0.0;
         for (lane, variant) in self.maps.lanes.iter().zip(&self.variant.lanes).filter(|(l, _)| !l.layers.is_empty()) {
             seen += variant.weight
                 * match self.variant.is_point_sun {
-                    true => hard_visibility(&lane.layers, index, self.bits, moment.t),
-                    false => soft_visibility(&lane.layers, index, self.bits, moment.t, moment.width_t * variant.chord),
+                    true => hard_visibility(&lane.layers, texel, self.bits, moment.t),
+                    false => soft_visibility(&lane.layers, texel, self.bits, moment.t, moment.width_t * variant.chord),
                 };
         }
         seen
     }
 
     fn page_visibility(&self, page_uv: Vec2, filter: Filter, moment: &Moment) -> f32 {
-        let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
+        self.filtered(page_uv, filter, |texel| self.disc_visibility(texel, moment))
+    }
+
+    /// A value of texels (`y * width + x`), at a point of the page.
+    fn filtered(&self, page_uv: Vec2, filter: Filter, value: impl Fn(usize) -> f32) -> f32 {
         match filter {
-            Filter::Nearest => {
-                let texel = (page_uv * (last + 1).as_vec2()).floor().as_ivec2();
-                self.disc_visibility(texel.clamp(IVec2::ZERO, last), moment)
-            }
-            Filter::Bilinear => bilinear(page_uv, last, |texel| self.disc_visibility(texel, moment)),
+            Filter::Nearest => value(self.nearest_texel(page_uv)),
+            Filter::Bilinear => self.footprint(page_uv).blend(value),
         }
+    }
+
+    fn nearest_texel(&self, page_uv: Vec2) -> usize {
+        let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
+        let texel = (page_uv * (last + 1).as_vec2()).floor().as_ivec2().clamp(IVec2::ZERO, last);
+        texel.y as usize * self.maps.width as usize + texel.x as usize
+    }
+
+    fn footprint(&self, page_uv: Vec2) -> Footprint {
+        let size = PageSize { width: self.maps.width, height: self.maps.height };
+        // In `f32`, as the shaders do it.
+        let point = page_uv * Vec2::new(size.width as f32, size.height as f32) - 0.5;
+        Footprint::new(point.as_dvec2(), size)
     }
 
     /// The sun as the maps tell it, no more than the share of its disc that stands before the surface's plane.
@@ -112,15 +125,8 @@ impl<'a> Page<'a> {
         if ball_share <= 0.0 || way_m.length_squared() > lamp.range_m * lamp.range_m {
             return 0.0;
         }
-        let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
-        let seen = |texel: IVec2| {
-            let index = texel.y as usize * self.maps.width as usize + texel.x as usize;
-            soft_visibility(layers, index, self.bits, lamp.t, lamp.width_t)
-        };
-        ball_share.min(match filter {
-            Filter::Nearest => seen((page_uv * (last + 1).as_vec2()).floor().as_ivec2().clamp(IVec2::ZERO, last)),
-            Filter::Bilinear => bilinear(page_uv, last, seen),
-        })
+        let seen = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
+        ball_share.min(self.filtered(page_uv, filter, seen))
     }
 
     /// Light from all around on a surface with this normal, turned to the eye; `is_back`: the eye is behind the surface.
@@ -131,19 +137,18 @@ impl<'a> Page<'a> {
         let of_normal = 0.5 + 0.5 * normal.y;
         let Some(ambient) = &self.maps.ambient else { return hemisphere(of_normal) };
         let side = side_of_page(ambient, is_back);
-        let last = IVec2::new(self.maps.width as i32, self.maps.height as i32) - 1;
-        let index = |texel: IVec2| texel.y as usize * self.maps.width as usize + texel.x as usize;
-        let open = || bilinear(page_uv, last, |texel| decode_open(side.open[index(texel)]));
+        let footprint = self.footprint(page_uv);
+        let open = || footprint.blend(|texel| decode_open(side.open[texel]));
         match (&side.sky, &side.bent) {
             (Some(sky), _) => {
-                let light_at = |texel| {
-                    let codes = sky[index(texel)].iter().zip(&around.sky);
+                let light_at = |texel: usize| {
+                    let codes = sky[texel].iter().zip(&around.sky);
                     codes.map(|(&code, &of_sky)| of_sky * decode_signed(code)).sum::<Vec3>()
                 };
-                bilinear(page_uv, last, light_at).max(Vec3::ZERO)
+                footprint.blend(light_at).max(Vec3::ZERO)
             }
             (None, Some(bent)) => {
-                let height = bilinear(page_uv, last, |texel| decode_signed(bent[index(texel)][1]));
+                let height = footprint.blend(|texel| decode_signed(bent[texel][1]));
                 hemisphere((0.5 + 0.75 * height).clamp(0.0, 1.0)) * open()
             }
             (None, None) => hemisphere(of_normal) * open(),
@@ -171,17 +176,4 @@ impl<'a> Around<'a> {
 /// The maps of the side that the eye is on.
 fn side_of_page(ambient: &AmbientMaps, is_back: bool) -> &AmbientSide {
     ambient.back.as_ref().filter(|_| is_back).unwrap_or(&ambient.front)
-}
-
-/// Four texels evaluated, then blended.
-fn bilinear<T: Mul<f32, Output = T> + Add<Output = T>>(page_uv: Vec2, last: IVec2, value: impl Fn(IVec2) -> T) -> T {
-    let place = page_uv * (last + 1).as_vec2() - 0.5;
-    let base = place.floor();
-    let weight = place - base;
-    let low = base.as_ivec2().clamp(IVec2::ZERO, last);
-    let high = (base.as_ivec2() + 1).clamp(IVec2::ZERO, last);
-    let mix = |a: T, b: T, weight: f32| a * (1.0 - weight) + b * weight;
-    let top = mix(value(low), value(IVec2::new(high.x, low.y)), weight.x);
-    let bottom = mix(value(IVec2::new(low.x, high.y)), value(high), weight.x);
-    mix(top, bottom, weight.y)
 }

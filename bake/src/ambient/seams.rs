@@ -10,7 +10,7 @@
 //! the normal equations (Shewchuk, "An introduction to the conjugate gradient method without the agonizing pain", 1994).
 
 use super::page::Plane;
-use crate::atlas::{Atlas, PageSamples, PageSize};
+use crate::atlas::{Atlas, Footprint, PageSamples, PageSize};
 use crate::scene::{Geometry, Scene, ShadingNormals};
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
@@ -32,9 +32,6 @@ const NEXT: usize = 16;
 /// Most points along an edge.
 const MOST_POINTS: f64 = 4096.0;
 const ITERATIONS: usize = 60;
-
-/// Texels and weights of a filter of two by two.
-type Footprint = [(u32, f64); 4];
 
 /// The cuts of a page.
 pub struct Seams {
@@ -261,26 +258,13 @@ fn along(one: &Edge, other: &Edge, size: PageSize) -> impl Iterator<Item = [(u32
     let sides = [one.ends, other.ends];
     (0..=steps).map(move |step| {
         let share = f64::from(step) / f64::from(steps);
-        let [a, b] = sides.map(|ends| footprint(ends[0].lerp(ends[1], share), size));
-        std::array::from_fn(|k| if k < 4 { a[k] } else { (b[k - 4].0, -b[k - 4].1) })
+        let [a, b] = sides.map(|ends| Footprint::new(ends[0].lerp(ends[1], share) - 0.5, size));
+        let (of_a, of_b) = (a.weights(), b.weights());
+        std::array::from_fn(|k| match k {
+            0..4 => (a.texels[k] as u32, of_a[k]),
+            _ => (b.texels[k - 4] as u32, -of_b[k - 4]),
+        })
     })
-}
-
-/// What a filter reads at a place on the page, in texels: as `playback` and any GPU does.
-fn footprint(place: DVec2, size: PageSize) -> Footprint {
-    let last = DVec2::new(f64::from(size.width - 1), f64::from(size.height - 1));
-    let low = (place - 0.5).floor();
-    let weight = place - 0.5 - low;
-    let texel = |x: f64, y: f64| {
-        let (x, y) = (x.clamp(0.0, last.x), y.clamp(0.0, last.y));
-        y as u32 * size.width + x as u32
-    };
-    [
-        (texel(low.x, low.y), (1.0 - weight.x) * (1.0 - weight.y)),
-        (texel(low.x + 1.0, low.y), weight.x * (1.0 - weight.y)),
-        (texel(low.x, low.y + 1.0), (1.0 - weight.x) * weight.y),
-        (texel(low.x + 1.0, low.y + 1.0), weight.x * weight.y),
-    ]
 }
 
 #[cfg(test)]

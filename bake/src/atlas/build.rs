@@ -1,76 +1,14 @@
 //! Making an atlas: judge what the file brings, unwrap the rest, find the density, place everything.
 
 use super::arrange::{Form, Item, Plan};
+use super::error::AtlasError;
+use super::meter::{Meter, UNWRAP_SHARE};
 use super::search::{MOST_PAGES, find_plan};
 use super::unwrap::{self, Charts};
 use super::{Atlas, AtlasSettings, Density, Layout, LayoutOrigin, Placement};
 use super::{existing, measure, shared};
 use crate::scene::{Alpha, Scene};
 use rayon::prelude::*;
-use std::sync::Mutex;
-use thiserror::Error;
-
-/// Share of the progress that unwrapping takes.
-pub(super) const UNWRAP_SHARE: f64 = 0.7;
-
-/// Why there is no atlas.
-#[derive(Debug, Error, PartialEq)]
-pub enum AtlasError {
-    /// Page size, padding, density or page count out of range.
-    #[error("{name} is {value}, but must be {requirement}")]
-    BadSetting {
-        /// Which.
-        name: &'static str,
-        /// What was given.
-        value: String,
-        /// What would be accepted.
-        requirement: &'static str,
-    },
-    /// The density asked for needs too many texels.
-    #[error(
-        "{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed: lower the density"
-    )]
-    TooDense {
-        /// Asked for.
-        density_per_metre: f64,
-        /// About what it needs.
-        texels: u64,
-        /// The limit.
-        most: u64,
-    },
-    /// Charts do not fit at any density.
-    #[error(
-        "{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density: use larger pages"
-    )]
-    PageTooSmall {
-        /// How many charts there are.
-        charts: usize,
-        /// Around each.
-        padding: u32,
-        /// Side of a page.
-        page_size: u32,
-    },
-    /// The progress callback returned false.
-    #[error("cancelled")]
-    Cancelled,
-}
-
-/// Reports progress, and remembers that it was told to stop.
-pub(super) struct Meter<'a> {
-    callback: &'a (dyn Fn(f64) -> bool + Sync),
-    /// Furthest reported, and whether to go on.
-    state: Mutex<(f64, bool)>,
-}
-
-impl Meter<'_> {
-    /// Reports, never going backwards. False: stop.
-    pub fn reach(&self, fraction: f64) -> bool {
-        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        state.0 = state.0.max(fraction);
-        state.1 = state.1 && (self.callback)(state.0);
-        state.1
-    }
-}
 
 /// Gives every instance texels of its own. `progress` gets the share that is done and returns false to stop.
 ///
@@ -81,7 +19,7 @@ pub fn build(
     progress: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<Atlas, AtlasError> {
     check(settings)?;
-    let meter = Meter { callback: progress, state: Mutex::new((0.0, true)) };
+    let meter = Meter::new(progress);
     let drawn = drawn_instances(scene);
     if let Some(atlas) = shared::shared_square(scene, settings, &drawn) {
         return Ok(atlas);
@@ -155,15 +93,6 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     drawn
 }
 
-pub(super) fn file_layout(scene: &Scene, mesh: usize) -> Layout {
-    let mut layout = Layout::of_mesh(&scene.meshes[mesh]);
-    layout.origin = LayoutOrigin::File;
-    if let Some(uvs) = &scene.meshes[mesh].texcoords[1] {
-        layout.uvs.clone_from(uvs);
-    }
-    layout
-}
-
 /// Everything that gets texels: the file's own layouts where they serve, else charts.
 fn make_items(
     scene: &Scene,
@@ -200,7 +129,7 @@ fn assemble(scene: &Scene, items: &[Item], plan: &Plan) -> Atlas {
     for (item, uvs) in items.iter().zip(plan.layout_uvs(items)) {
         let mesh = scene.instances[item.instances[0].0].mesh;
         layouts[mesh] = Some(match &item.form {
-            Form::Given(_) => file_layout(scene, mesh),
+            Form::Given(_) => Layout::of_file(&scene.meshes[mesh]),
             Form::Charts(charts) => Layout {
                 origin: LayoutOrigin::Unwrapped,
                 vertices: charts.vertices.clone(),

@@ -4,16 +4,19 @@
 //! and `page_uv = layout_uv * scale + offset`. Texel (x, y) of a page of `width` by `height` covers
 //! `[x, x + 1] / width` by `[y, y + 1] / height`; row 0 is v = 0, the top of the PNG and of a wgpu texture.
 
+use crate::scene::Mesh;
 use glam::{DVec2, DVec3, Vec2};
 
 mod arrange;
 mod build;
 mod coverage;
+mod error;
 mod existing;
+mod footprint;
 mod gaps;
 mod gutter;
 mod measure;
-mod of_set;
+mod meter;
 mod outline;
 mod overlap;
 mod samples;
@@ -25,7 +28,9 @@ mod tests;
 mod tile;
 mod unwrap;
 
-pub use build::{AtlasError, build};
+pub use build::build;
+pub use error::AtlasError;
+pub use footprint::Footprint;
 pub use gutter::{GutterTexel, gutter};
 pub use samples::{by_tiles, sample_finer, sample_page, surface_point};
 
@@ -141,8 +146,14 @@ pub enum LayoutOrigin {
 }
 
 impl Layout {
+    /// The mesh with the coordinates that its file has in `TEXCOORD_1`; zero where it has none.
+    pub fn of_file(mesh: &Mesh) -> Self {
+        let layout = Self { origin: LayoutOrigin::File, ..Self::of_mesh(mesh) };
+        Self { uvs: mesh.texcoords[1].clone().unwrap_or_else(|| layout.uvs.clone()), ..layout }
+    }
+
     /// The mesh as it is, all coordinates zero: for a mesh that has no texels.
-    pub fn of_mesh(mesh: &crate::scene::Mesh) -> Self {
+    pub fn of_mesh(mesh: &Mesh) -> Self {
         let count = mesh.positions.len();
         Self {
             origin: LayoutOrigin::Unwrapped,

@@ -4,7 +4,8 @@
 //! packs anew; see [`super::strip`] for why that can be afforded.
 
 use super::arrange::{Arrangement, Item, Plan};
-use super::build::{AtlasError, Meter, UNWRAP_SHARE};
+use super::error::AtlasError;
+use super::meter::{Meter, UNWRAP_SHARE};
 use super::{AtlasSettings, Density};
 
 /// How near to the best density the search comes.

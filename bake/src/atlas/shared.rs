@@ -1,6 +1,5 @@
 //! The whole scene in one square of the file's own: coordinates that were made for light maps, used as they are.
 
-use super::build::file_layout;
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, Layout, PageSize, Placement};
 use crate::scene::Scene;
@@ -34,7 +33,9 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     let whole = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole);
-    let layout = |m: usize| if drawn[m].is_empty() { Layout::of_mesh(&scene.meshes[m]) } else { file_layout(scene, m) };
+    let layout = |m: usize| {
+        if drawn[m].is_empty() { Layout::of_mesh(&scene.meshes[m]) } else { Layout::of_file(&scene.meshes[m]) }
+    };
     let texels_per_metre = f64::from(side) * (uv2 / metres2).sqrt();
     let layouts = (0..scene.meshes.len()).map(layout).collect();
     let warnings = density_warning(settings, texels_per_metre).into_iter().collect();

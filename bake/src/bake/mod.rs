@@ -12,7 +12,7 @@ use crate::atlas::AtlasError;
 use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge, Occlusion};
-use crate::lamp::{self, LampError, LampPath};
+use crate::lamp::{self, LampError, LampFileError, LampPath};
 use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan, LayersNeeded};
 use crate::progress::{BakeStage, Progress};
@@ -43,7 +43,10 @@ pub enum BakeError {
     /// The path file is wrong.
     #[error(transparent)]
     Keyed(#[from] KeyedError),
-    /// The lamp's path is wrong.
+    /// The lamp's path file is wrong.
+    #[error(transparent)]
+    LampFile(#[from] LampFileError),
+    /// The lamp's path cannot last as long as the sun's.
     #[error(transparent)]
     Lamp(#[from] LampError),
     /// Two lamps are asked for.

@@ -54,6 +54,7 @@ impl From<BakeError> for Failure {
             | BakeError::Atlas(AtlasError::BadSetting { .. }) => 1,
             BakeError::Cancelled => 130,
             BakeError::Keyed(_)
+            | BakeError::LampFile(_)
             | BakeError::Lamp(_)
             | BakeError::Light(_)
             | BakeError::Atlas(_)

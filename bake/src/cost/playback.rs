@@ -4,12 +4,11 @@
 use super::CostError;
 use super::metric;
 use super::truth::{SurfaceSample, Truth};
-use crate::atlas::Atlas;
+use crate::atlas::{Atlas, Footprint};
 use crate::disk::read::BakedSet;
 use crate::maps::{Bits, LaneMaps, PageMaps, decode_open, soft_visibility};
 use crate::scene::{self, Geometry, LoadLimits, Scene};
 use crate::sun::SunPath;
-use glam::DVec2;
 use rayon::prelude::*;
 
 /// How far a triangle may lie from where it was, as a share of the scene's half size.
@@ -29,7 +28,7 @@ pub(super) type Blend = [(usize, f32); 4];
 pub(super) fn errors(set: &BakedSet, truth: &Truth, of: &Scene) -> Result<Errors, CostError> {
     let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
     let geometry = Geometry::new(&scene);
-    let atlas = Atlas::of_set(&scene, &set.manifest);
+    let atlas = set.manifest.atlas(&scene);
     check(truth, of, &scene, &geometry)?;
     let blends: Vec<(usize, Blend)> =
         truth.places.iter().map(|place| blend(place, &scene, &geometry, &atlas)).collect();
@@ -121,24 +120,9 @@ pub(super) fn blend(place: &SurfaceSample, scene: &Scene, geometry: &Geometry, a
     };
     let [u, v] = place.barycentric;
     let at = corner(0) * (1.0 - u - v) + corner(1) * u + corner(2) * v;
-    (page, blend_at(at, size.width, size.height))
-}
-
-/// The texels around a place on the page, given in texels.
-fn blend_at(at: DVec2, width: u32, height: u32) -> Blend {
-    let base = (at - 0.5).floor();
-    let weight = (at - 0.5 - base).as_vec2();
-    let index = |dx: f64, dy: f64| {
-        let x = (base.x + dx).clamp(0.0, f64::from(width - 1)) as usize;
-        let y = (base.y + dy).clamp(0.0, f64::from(height - 1)) as usize;
-        y * width as usize + x
-    };
-    [
-        (index(0.0, 0.0), (1.0 - weight.x) * (1.0 - weight.y)),
-        (index(1.0, 0.0), weight.x * (1.0 - weight.y)),
-        (index(0.0, 1.0), (1.0 - weight.x) * weight.y),
-        (index(1.0, 1.0), weight.x * weight.y),
-    ]
+    let footprint = Footprint::new(at - 0.5, size);
+    let weights = footprint.weights_f32();
+    (page, std::array::from_fn(|k| (footprint.texels[k], weights[k])))
 }
 
 /// Openness that the set shows.
@@ -146,19 +130,4 @@ fn shown_open(page: &PageMaps, place: &SurfaceSample, blend: &Blend) -> Option<f
     let ambient = page.ambient.as_ref()?;
     let side = ambient.back.as_ref().filter(|_| place.is_back).unwrap_or(&ambient.front);
     Some(blend.iter().map(|&(texel, weight)| weight * decode_open(side.open[texel])).sum())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_blend_is_that_of_a_filter() {
-        assert_eq!(blend_at(DVec2::new(1.5, 0.5), 4, 4)[0], (1, 1.0));
-        let [a, b, c, d] = blend_at(DVec2::new(2.0, 1.25), 4, 4);
-        assert_eq!([a.0, b.0, c.0, d.0], [1, 2, 5, 6]);
-        assert_eq!([a.1, b.1, c.1, d.1], [0.125, 0.125, 0.375, 0.375]);
-        let at_corner = blend_at(DVec2::new(0.0, 0.0), 4, 4);
-        assert!(at_corner.iter().all(|(texel, _)| *texel == 0));
-    }
 }

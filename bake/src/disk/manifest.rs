@@ -416,3 +416,18 @@ pub struct LossEntry {
     /// Where that is: atlas page, x, y. Null where nothing was lost.
     pub worst_at: Option<[u32; 3]>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_of_older_sets_load_and_are_written_with_the_new_key() {
+        let older = r#"{"effect": "sun", "on": true, "why": "a day", "turned_over_by": "--only ao"}"#;
+        let effect: EffectEntry = serde_json::from_str(older).unwrap();
+        assert_eq!(effect.toggled_by, "--only ao");
+        let written = serde_json::to_value(&effect).unwrap();
+        assert_eq!(written["toggled_by"], "--only ao");
+        assert!(written.get("turned_over_by").is_none());
+    }
+}

@@ -1,5 +1,6 @@
 //! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`mod@write`] writes one; only [`mod@read`] reads one.
 
+mod atlas;
 mod exr_file;
 pub mod folder;
 pub mod manifest;
@@ -9,4 +10,3 @@ mod write_ambient;
 mod write_loss;
 
 pub use exr_file::write_exr;
-pub(crate) use write_ambient::in_8_bits;

@@ -5,7 +5,7 @@ use super::exr_file::write_exr;
 use super::manifest::{AtlasEntry, SkyMapsEntry};
 use super::write::{SetWriter, WriteError};
 use crate::ambient::{AmbientPage, Side};
-use crate::maps::{AmbientMaps, AmbientSide, Bits};
+use crate::maps::{AmbientMaps, AmbientSide, Bits, in_8_bits};
 use crate::settings::AmbientRequest;
 use std::io::{Result, Seek, Write};
 
@@ -67,11 +67,6 @@ fn write_occlusion(maps: &AmbientMaps, size: (u32, u32), bits: Bits, file: impl 
     write_png(&codes, color, size, bits, file)
 }
 
-/// A code of 16 bits as the nearest of 8.
-pub(crate) fn in_8_bits(code: u16) -> u8 {
-    ((u32::from(code) * 255 + 32_767) / 65_535) as u8
-}
-
 fn write_rgb16(texels: impl Iterator<Item = [u16; 3]>, size: (u32, u32), file: impl Write) -> Result<()> {
     write_png(&texels.flatten().collect::<Vec<u16>>(), png::ColorType::Rgb, size, Bits::Sixteen, file)
 }
@@ -105,14 +100,4 @@ fn write_numbers(page: &AmbientPage, file: impl Write + Seek) -> Result<()> {
         sky.iter().enumerate().for_each(|(k, plane)| add(format!("{prefix}sky.{k}"), plane));
     }
     write_exr([page.size.width, page.size.height], channels, file)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn codes_of_16_bits_round_to_the_nearest_of_8() {
-        assert_eq!([0, 65_535, 257, 128, 129, 32_768].map(in_8_bits), [0, 255, 1, 0, 1, 128]);
-    }
 }

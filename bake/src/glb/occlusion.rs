@@ -6,8 +6,7 @@
 use super::binary::Binary;
 use super::materials::{Written, index_of};
 use crate::atlas::{Atlas, PageSize};
-use crate::disk::in_8_bits;
-use crate::maps::AmbientMaps;
+use crate::maps::{AmbientMaps, in_8_bits};
 use crate::scene::Scene;
 use glam::Vec2;
 use serde_json::json;

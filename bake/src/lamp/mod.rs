@@ -10,7 +10,7 @@
 
 mod parse;
 
-pub use parse::{is_lamp, parse_lamp};
+pub use parse::{LampFileError, is_lamp, parse_lamp};
 
 use glam::DVec3;
 

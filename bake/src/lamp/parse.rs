@@ -10,8 +10,8 @@
 //! Positions are world space, in metres. `t` runs from 0 to 1; if no key has one, keys are evenly spaced. Without
 //! `radius_m` the lamp is a bulb of 5 cm; without `duration_min` the path takes a minute.
 
-use super::{LampKey, LampPath};
-use crate::sun::{KeyedError, MAX_KEYS, key_times};
+use super::{LampError, LampKey, LampPath};
+use crate::sun::{KeyError, key_times};
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -20,6 +20,20 @@ use serde::de::IgnoredAny;
 const RADIUS_M: f64 = 0.05;
 /// Minutes of a path that has none of its own.
 const DURATION_MIN: f64 = 1.0;
+
+/// Why a file of keys makes no path of a lamp.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LampFileError {
+    /// The keys themselves are wrong.
+    #[error(transparent)]
+    Keys(#[from] KeyError),
+    /// A sun's path where a lamp's was asked for.
+    #[error("the lamp's path file has {0}")]
+    OfSun(&'static str),
+    /// The places make no path.
+    #[error(transparent)]
+    Path(#[from] LampError),
+}
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -50,24 +64,21 @@ pub fn is_lamp(json: &str) -> bool {
 }
 
 /// Reads the path of a lamp, world space.
-pub fn parse_lamp(json: &str) -> Result<LampPath, KeyedError> {
-    let file: File = serde_json::from_str(json).map_err(|error| KeyedError::Json(error.to_string()))?;
+pub fn parse_lamp(json: &str) -> Result<LampPath, LampFileError> {
+    let file: File = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.angular_radius_deg.is_some() {
-        return Err(KeyedError::Mixed("'angular_radius_deg', which a sun has: give a lamp 'radius_m'"));
-    }
-    if !(2..=MAX_KEYS).contains(&file.keys.len()) {
-        return Err(KeyedError::Count(file.keys.len()));
+        return Err(LampFileError::OfSun("'angular_radius_deg', which a sun has: give a lamp 'radius_m'"));
     }
     let given: Vec<Option<f64>> = file.keys.iter().map(|key| key.t).collect();
     let times = key_times(&given)?;
-    let keys: Result<Vec<LampKey>, KeyedError> =
+    let keys: Result<Vec<LampKey>, KeyError> =
         file.keys.iter().enumerate().map(|(index, key)| lamp_key(index, key, times[index])).collect();
     let (radius_m, duration_min) = (file.radius_m.unwrap_or(RADIUS_M), file.duration_min.unwrap_or(DURATION_MIN));
     Ok(LampPath::new(keys?, radius_m, duration_min)?)
 }
 
-fn lamp_key(index: usize, key: &Key, t: f64) -> Result<LampKey, KeyedError> {
-    let wrong = |problem: &str| KeyedError::Key { index, problem: problem.to_owned() };
+fn lamp_key(index: usize, key: &Key, t: f64) -> Result<LampKey, KeyError> {
+    let wrong = |problem: &str| KeyError::Key { index, problem: problem.to_owned() };
     if key.direction.is_some() || key.azimuth_deg.is_some() || key.elevation_deg.is_some() {
         return Err(wrong("has a direction, which a lamp has not: give every key a 'position'"));
     }

@@ -43,6 +43,11 @@ pub fn decode_signed(code: u16) -> f32 {
     (f32::from(code) - 32_768.0) / 32_767.0
 }
 
+/// A code of 16 bits as the nearest of 8.
+pub(crate) fn in_8_bits(code: u16) -> u8 {
+    ((u32::from(code) * 255 + 32_767) / 65_535) as u8
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,5 +61,10 @@ mod tests {
         }
         assert_eq!([-1.0, 0.0, 1.0].map(|x| decode_signed(encode_signed(x))), [-1.0, 0.0, 1.0]);
         assert_eq!([f32::NAN, 2.0].map(encode_open), [0, 65_535]);
+    }
+
+    #[test]
+    fn codes_of_16_bits_round_to_the_nearest_of_8() {
+        assert_eq!([0, 65_535, 257, 128, 129, 32_768].map(in_8_bits), [0, 255, 1, 0, 1, 128]);
     }
 }

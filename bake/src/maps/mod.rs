@@ -11,6 +11,7 @@ mod evaluate;
 mod lanes;
 mod requantise;
 
+pub(crate) use ambient::in_8_bits;
 pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_open, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};

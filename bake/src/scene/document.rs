@@ -264,3 +264,23 @@ pub(super) struct Camera {
 pub(super) struct Perspective {
     pub yfov: f64,
 }
+
+impl Material {
+    /// Factor and texture of the base colour: metallic-roughness, else the older specular-glossiness model's diffuse colour.
+    pub fn base_color(self) -> ([f32; 4], Option<TextureInfo>) {
+        let standard = self.pbr_metallic_roughness.unwrap_or_default();
+        let has_standard = standard.base_color_factor.is_some() || standard.base_color_texture.is_some();
+        let (factor, texture) = match self.extensions.specular_glossiness {
+            Some(older) if !has_standard => (older.diffuse_factor, older.diffuse_texture),
+            _ => (standard.base_color_factor, standard.base_color_texture),
+        };
+        (factor.unwrap_or([1.0; 4]), texture)
+    }
+}
+
+impl TextureInfo {
+    /// Which `TEXCOORD_n` the texture reads.
+    pub fn texcoord(&self) -> usize {
+        self.extensions.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(self.tex_coord)
+    }
+}

@@ -27,17 +27,6 @@ pub(super) struct Draft {
     is_blended: bool,
 }
 
-/// Which set of texture coordinates a material's base colour wants.
-pub(super) fn color_texcoord(doc: &Document, index: usize) -> Option<usize> {
-    let material: document::Material = doc.get(index).ok()?;
-    let (_, texture) = base_color(material);
-    texture.map(|info| texcoord(&info))
-}
-
-fn texcoord(info: &TextureInfo) -> usize {
-    info.extensions.transform.as_ref().and_then(|t| t.tex_coord).unwrap_or(info.tex_coord)
-}
-
 /// Reads the materials that are drawn, in file order and glTF's default material last, and numbers the meshes' so.
 pub(super) fn read(doc: &Document, drawn: &mut Drawn, log: &mut Log) -> Result<Vec<Draft>, LoadError> {
     let sorted = |file: &Option<usize>| file.unwrap_or(usize::MAX);
@@ -73,7 +62,7 @@ fn draft(doc: &Document, index: usize, log: &mut Log) -> Result<Draft, LoadError
         is_double_sided: file.double_sided,
         is_unlit: file.extensions.unlit.is_some(),
     };
-    let (factor, texture) = base_color(file);
+    let (factor, texture) = file.base_color();
     material.base_color = Vec4::from_array(factor).clamp(Vec4::ZERO, Vec4::ONE);
     match texture.map(|info| texture_ref(doc, &info)) {
         Some(Err(cause)) => lose_texture(&place, "its base colour texture", &cause, cutoff.is_some(), log)?,
@@ -81,17 +70,6 @@ fn draft(doc: &Document, index: usize, log: &mut Log) -> Result<Draft, LoadError
         None => {}
     }
     Ok(Draft { place, material, cutoff, is_blended })
-}
-
-/// Metallic-roughness, else the older specular-glossiness model's diffuse colour.
-fn base_color(file: document::Material) -> ([f32; 4], Option<TextureInfo>) {
-    let plain = file.pbr_metallic_roughness.unwrap_or_default();
-    let is_plain = plain.base_color_factor.is_some() || plain.base_color_texture.is_some();
-    let (factor, texture) = match file.extensions.specular_glossiness {
-        Some(older) if !is_plain => (older.diffuse_factor, older.diffuse_texture),
-        _ => (plain.base_color_factor, plain.base_color_texture),
-    };
-    (factor.unwrap_or([1.0; 4]), texture)
 }
 
 fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String> {
@@ -109,7 +87,7 @@ fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String>
     Ok(TextureRef {
         image,
         // Set 2 and beyond stand in place of set 0: see `primitives`.
-        texcoord: usize::from(texcoord(info) == 1),
+        texcoord: usize::from(info.texcoord() == 1),
         image_from_texcoord: info.extensions.transform.as_ref().map_or(Mat3::IDENTITY, image_from_texcoord),
         wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]),
     })

@@ -5,7 +5,6 @@ use super::{
     accessors::Reader,
     document::{self, Primitive, place},
     limits::Log,
-    materials,
     nodes::{Tree, label},
     normals,
     pose::{Pose, Skeletons},
@@ -173,7 +172,8 @@ impl PrimitiveReader<'_> {
 
     /// Sets 0 and 1; but where the base colour wants a set beyond them, that one stands in place of set 0.
     fn texcoords(&self, count: usize, used: &[u32], log: &mut Log) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
-        let wanted = self.material.and_then(|m| materials::color_texcoord(self.reader.doc, m)).filter(|&set| set > 1);
+        let material = self.material.and_then(|index| self.reader.doc.get::<document::Material>(index).ok());
+        let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord()).filter(|&set| set > 1);
         let first = wanted.map_or_else(|| "TEXCOORD_0".to_owned(), |set| format!("TEXCOORD_{set}"));
         let mut sets = [None, None];
         for (slot, name) in sets.iter_mut().zip([first.as_str(), "TEXCOORD_1"]) {

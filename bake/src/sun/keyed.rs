@@ -15,53 +15,21 @@
 use glam::DVec3;
 use serde::Deserialize;
 
-use crate::lamp::LampError;
-
+use super::keys::{KeyError, key_times};
 use super::{Compass, PathError, SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath, duration_min_of_angle};
-
-/// Most keys that a path may have: each pair costs a query of the scene for every texel.
-pub const MAX_KEYS: usize = 1000;
 
 /// Smallest angle between neighbouring keys, and between a key and the opposite of its neighbour, in degrees.
 const MIN_ANGLE_DEG: f64 = 0.001;
 
-/// Shortest time between neighbouring keys.
-const MIN_STEP_T: f64 = 1e-6;
-
-/// Why a file of keys makes no path.
+/// Why a file of keys makes no path of a sun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum KeyedError {
-    /// Not JSON, or not of this form.
-    #[error("the path file is not understood: {0}")]
-    Json(String),
+    /// The keys themselves are wrong.
+    #[error(transparent)]
+    Keys(#[from] KeyError),
     /// A lamp's path where a sun's was asked for.
     #[error("the path file has '{0}', and a sun's path has directions only: a lamp's has a 'position' in every key")]
     Positions(&'static str),
-    /// A sun's path where a lamp's was asked for.
-    #[error("the lamp's path file has {0}")]
-    Mixed(&'static str),
-    /// Places make no path of a lamp.
-    #[error(transparent)]
-    Lamp(#[from] LampError),
-    /// Too few or too many keys.
-    #[error("the path has {0} keys: give 2 to {MAX_KEYS}")]
-    Count(usize),
-    /// A key is wrong in itself.
-    #[error("key {index} of the path (counted from 0) {problem}")]
-    Key {
-        /// Which key.
-        index: usize,
-        /// What is wrong, and what to give.
-        problem: String,
-    },
-    /// A key does not go with the one before it.
-    #[error("keys {index} and {next} of the path (counted from 0) {problem}", next = .index + 1)]
-    Pair {
-        /// The first of the two.
-        index: usize,
-        /// What is wrong, and what to give.
-        problem: String,
-    },
     /// A size out of range.
     #[error("{name} is {value}: give a number {bound}")]
     Size {
@@ -102,16 +70,15 @@ struct Key {
 
 /// Reads a path of keys. `north_deg` turns azimuths as it turns a day's ([`Compass::new`]); directions are left alone.
 pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
-    let file: File = serde_json::from_str(json).map_err(|error| KeyedError::Json(error.to_string()))?;
+    let file: File = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.positions.is_some() {
         return Err(KeyedError::Positions("positions"));
     }
     if file.keys.iter().any(|key| key.position.is_some()) {
         return Err(KeyedError::Positions("position"));
     }
-    if !(2..=MAX_KEYS).contains(&file.keys.len()) {
-        return Err(KeyedError::Count(file.keys.len()));
-    }
+    let given: Vec<Option<f64>> = file.keys.iter().map(|key| key.t).collect();
+    let times = key_times(&given)?;
     let angular_radius_deg = file.angular_radius_deg.unwrap_or(SUN_ANGULAR_RADIUS_DEG);
     if !(0.0..90.0).contains(&angular_radius_deg) {
         let bound = "of at least 0 and under 90";
@@ -123,8 +90,7 @@ pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
     if !north_deg.is_finite() {
         return Err(KeyedError::Size { name: "north", value: north_deg, bound: "that is finite" });
     }
-    let given: Vec<Option<f64>> = file.keys.iter().map(|key| key.t).collect();
-    let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &key_times(&given)?)?;
+    let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &times)?;
     let swept_rad: f64 = arcs.iter().map(|arc| arc.hour_angle_rad[1]).sum();
     let duration_min = file.duration_min.unwrap_or(duration_min_of_angle(swept_rad));
     let path = SunPath::new(arcs, angular_radius_deg.to_radians(), duration_min)?;
@@ -135,9 +101,9 @@ pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
 }
 
 /// Unit directions of the keys, world space.
-fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyedError> {
+fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyError> {
     let one = |(index, key): (usize, &Key)| {
-        let wrong = |problem: &str| KeyedError::Key { index, problem: problem.to_owned() };
+        let wrong = |problem: &str| KeyError::Key { index, problem: problem.to_owned() };
         match (key.direction, key.azimuth_deg, key.elevation_deg) {
             (Some(direction), None, None) => DVec3::from_array(direction)
                 .try_normalize()
@@ -154,41 +120,13 @@ fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyedError>
     keys.iter().enumerate().map(one).collect()
 }
 
-/// Times of two keys or more, from 0 to 1, from those given.
-pub(crate) fn key_times(given: &[Option<f64>]) -> Result<Vec<f64>, KeyedError> {
-    let last = given.len() - 1;
-    if given.iter().all(Option::is_none) {
-        return Ok((0..=last).map(|i| i as f64 / last as f64).collect());
-    }
-    let wrong = |index, problem: String| Err(KeyedError::Key { index, problem });
-    let mut times = Vec::with_capacity(given.len());
-    for (index, t) in given.iter().enumerate() {
-        let Some(t) = *t else {
-            return wrong(index, "has no 't': give every key one, or none".to_owned());
-        };
-        let expected = if index == 0 { Some(0.0) } else { (index == last).then_some(1.0) };
-        if expected.is_some_and(|expected| t != expected) {
-            return wrong(index, format!("has t = {t}: the first is at 0 and the last at 1"));
-        }
-        times.push(t);
-    }
-    for (index, pair) in times.windows(2).enumerate() {
-        if pair[1] - pair[0] < MIN_STEP_T {
-            let problem =
-                format!("are at t = {} and {}: times must ascend, by {MIN_STEP_T} at least", pair[0], pair[1]);
-            return Err(KeyedError::Pair { index, problem });
-        }
-    }
-    Ok(times)
-}
-
 /// Great circles from key to key.
-fn arcs(directions: &[DVec3], times: &[f64]) -> Result<Vec<SunArc>, KeyedError> {
+fn arcs(directions: &[DVec3], times: &[f64]) -> Result<Vec<SunArc>, KeyError> {
     let one = |(index, pair): (usize, &[DVec3])| {
         let [zero, end] = [pair[0], pair[1]];
         let across = zero.cross(end);
         let angle = across.length().atan2(zero.dot(end));
-        let wrong = |problem: String| Err(KeyedError::Pair { index, problem });
+        let wrong = |problem: String| Err(KeyError::Pair { index, problem });
         if angle.to_degrees() < MIN_ANGLE_DEG {
             return wrong("point the same way: a light that stands still has no path; drop one of them".to_owned());
         }

@@ -15,6 +15,7 @@ mod day;
 mod ephemeris;
 mod fit;
 mod keyed;
+mod keys;
 mod light;
 mod path;
 
@@ -26,8 +27,9 @@ pub use clock::{ClockError, DAY_MIN, Date, DateError, YEARS, clock_text, parse_c
 pub use compass::Compass;
 pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day, parse_place};
 pub use ephemeris::EphemerisError;
-pub(crate) use keyed::key_times;
-pub use keyed::{KeyedError, MAX_KEYS, parse_keyed};
+pub use keyed::{KeyedError, parse_keyed};
+pub(crate) use keys::key_times;
+pub use keys::{KeyError, MAX_KEYS};
 pub use light::{LightError, fixed_light};
 pub use path::{Day, PathError, SunPath};
 

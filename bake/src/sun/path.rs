@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::arc::SunArc;
 use super::clock::{DAY_MIN, Date, clock_text, date_time_text};
-use crate::visibility::Intervals;
+use crate::intervals::Intervals;
 
 /// A sun path over `t` in [0, 1].
 ///

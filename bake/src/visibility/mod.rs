@@ -7,14 +7,13 @@
 
 mod bisect;
 mod exact;
-pub mod intervals;
 mod lamp;
 mod probe;
 mod rays;
 
+pub use crate::intervals::{IntervalTable, Intervals};
 pub use bisect::BisectEngine;
 pub use exact::ExactEngine;
-pub use intervals::{IntervalTable, Intervals};
 pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{KeyedError, LightError, SunPath, fixed_light, parse_keyed};
+use super::super::{KeyError, KeyedError, LightError, SunPath, fixed_light, parse_keyed};
 
 fn keyed(keys: &str) -> Result<SunPath, KeyedError> {
     parse_keyed(&format!(r#"{{"keys": [{keys}]}}"#), 0.0)
@@ -71,7 +71,7 @@ fn bad_sizes_and_positions_are_refused_by_name() {
         assert!(message.contains(told), "{message}");
     }
     assert!(matches!(parse_keyed(r#"{"positions": []}"#, 0.0), Err(KeyedError::Positions(_))));
-    assert!(matches!(parse_keyed("", 0.0), Err(KeyedError::Json(_))));
+    assert!(matches!(parse_keyed("", 0.0), Err(KeyedError::Keys(KeyError::Json(_)))));
     assert!(matches!(parse_keyed(&format!("{{{keys}}}"), f64::NAN), Err(KeyedError::Size { .. })));
 }
 

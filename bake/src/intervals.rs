@@ -1,4 +1,6 @@
-//! Sorted, disjoint intervals of path time: the answer to "when does this point see the sun?".
+//! Sorted, disjoint intervals of path time: the answer to "when does this point see the light?".
+//!
+//! Below every room that makes or reads such answers: sun paths, visibility and maps.
 
 /// Lit intervals of one point.
 ///

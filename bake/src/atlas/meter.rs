@@ -1,0 +1,28 @@
+//! Progress of building an atlas.
+
+use std::sync::Mutex;
+
+/// Share of the progress that unwrapping takes.
+pub(super) const UNWRAP_SHARE: f64 = 0.7;
+
+/// Reports progress, and remembers that it was told to stop.
+pub(super) struct Meter<'a> {
+    callback: &'a (dyn Fn(f64) -> bool + Sync),
+    /// Furthest reported, and whether to go on.
+    state: Mutex<(f64, bool)>,
+}
+
+impl<'a> Meter<'a> {
+    /// Nothing reported yet.
+    pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
+        Self { callback, state: Mutex::new((0.0, true)) }
+    }
+
+    /// Reports, never going backwards. False: stop.
+    pub fn reach(&self, fraction: f64) -> bool {
+        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        state.0 = state.0.max(fraction);
+        state.1 = state.1 && (self.callback)(state.0);
+        state.1
+    }
+}
