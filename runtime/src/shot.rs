@@ -33,7 +33,7 @@ impl<'a> Shot<'a> {
                 .with_min_len(64)
                 .map(|i| {
                     let ray = self.view.ray((i % width) as u32, (i / width) as u32);
-                    self.stage.see(eye_m, ray.as_dvec3())
+                    self.stage.primary_hit(eye_m, ray.as_dvec3())
                 })
                 .collect()
         })

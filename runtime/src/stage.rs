@@ -309,8 +309,8 @@ impl Stage {
         (texels / (q - p).cross(r - p).length().max(f64::MIN_POSITIVE)).sqrt().min(1e12) as f32
     }
 
-    /// What a primary ray sees: the nearest surface that is drawn and that turns a visible side to the eye.
-    pub fn see(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
+    /// The first hit of a primary ray: the nearest surface that is drawn and turns a drawn side to the eye.
+    pub fn primary_hit(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
         let direction = direction.normalize();
         self.tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
             let sides = self.sides[triangle as usize];

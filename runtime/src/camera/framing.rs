@@ -13,7 +13,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Vertical field of view.
-pub(super) const FOV_Y_DEG: f64 = 38.0;
+pub(crate) const FOV_Y_DEG: f64 = 38.0;
 /// Points that stand for the scene.
 const POINTS: usize = 1500;
 /// Largest weight of a triangle, in weights of a middling one.
@@ -68,7 +68,7 @@ fn somewhere(stage: &Stage) -> Camera {
 }
 
 /// Unit vector from the scene to a camera; bearings run from north over east.
-pub(super) fn towards(bearing_deg: f64, elevation_deg: f64) -> DVec3 {
+pub(crate) fn towards(bearing_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_b, cos_b) = bearing_deg.to_radians().sin_cos();
     let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
     DVec3::new(sin_b * cos_e, sin_e, -cos_b * cos_e)
@@ -81,7 +81,7 @@ fn liking(bearing_deg: f64, elevation_deg: f64) -> f64 {
 }
 
 /// Points of the surfaces that are drawn, more of them where there is more detail.
-pub(super) fn detail(stage: &Stage) -> Vec<DVec3> {
+pub(crate) fn detail(stage: &Stage) -> Vec<DVec3> {
     let geometry = &stage.geometry;
     let edge_m = |triangle: usize| {
         let [a, b, c] = geometry.triangles[triangle].map(|v| v.as_dvec3());
@@ -109,7 +109,7 @@ pub(super) fn detail(stage: &Stage) -> Vec<DVec3> {
 }
 
 /// The middle of the points' bounds, outliers left out.
-pub(super) fn middle(points: &[DVec3]) -> DVec3 {
+pub(crate) fn middle(points: &[DVec3]) -> DVec3 {
     let along = |axis: DVec3| middle_along(points, axis);
     DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
 }
@@ -126,7 +126,7 @@ fn middle_along(points: &[DVec3], axis: DVec3) -> f64 {
 }
 
 /// The camera in a direction from the middle, as near as has most points in the picture.
-pub(super) fn standing_back(points: &[DVec3], middle: DVec3, towards: DVec3, aspect: f64) -> Option<Camera> {
+pub(crate) fn standing_back(points: &[DVec3], middle: DVec3, towards: DVec3, aspect: f64) -> Option<Camera> {
     let camera = Camera::look_at(middle + towards, middle, FOV_Y_DEG.to_radians())?;
     // The middle of the box is not the middle of the picture: seen aslant, what is high lies further up.
     let shift = |axis: DVec3| axis * (middle_along(points, axis) - middle.dot(axis));
@@ -149,7 +149,7 @@ fn seen(stage: &Stage, camera: &Camera, points: &[DVec3]) -> usize {
     let is_seen = |p: &&DVec3| {
         let ray = **p - camera.eye_m;
         ray.dot(camera.forward) > 0.0
-            && stage.see(camera.eye_m, ray).is_some_and(|hit| hit.distance_m > ray.length() * 0.999)
+            && stage.primary_hit(camera.eye_m, ray).is_some_and(|hit| hit.distance_m > ray.length() * 0.999)
     };
     points.iter().filter(is_seen).count()
 }

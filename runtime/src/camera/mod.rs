@@ -1,10 +1,10 @@
 //! Where the picture is taken from. Cameras live in bake space and in `f64`; what both the GPU and a ray tracer use of
 //! them (the eye, the rays) is rounded to `f32` once, here, so that both look along the same rays.
 
-mod edges;
-mod framing;
+mod choice;
+pub(crate) mod framing;
 
-pub use edges::{Vantage, vantages};
+pub use choice::{CameraChoice, CameraError};
 
 use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 use sunbake::scene::Scene;

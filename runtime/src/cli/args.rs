@@ -1,12 +1,13 @@
 //! Every option, with its range and its default.
 
 use super::compare::args::CompareArgs;
-use super::place::{CameraChoice, parse_camera};
-use super::when::{When, parse_when};
+use super::place::parse_camera;
+use super::when::parse_when;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::sun::{Date, parse_place};
-use sunbake_runtime::light::WITHOUT_END;
+use sunbake_runtime::camera::CameraChoice;
+use sunbake_runtime::light::{TimeChoice, WITHOUT_END};
 use sunbake_runtime::shadow_maps::{Bias, Variant};
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::volumes::Mode;
@@ -43,7 +44,7 @@ pub struct FrameArgs {
     ///
     /// The set's path runs from sunrise to sunset unless it was baked otherwise; `sunbake inspect` prints it.
     #[arg(long, value_name = "HH:MM|T", value_parser = parse_when, default_value = "0.5")]
-    pub at: When,
+    pub at: TimeChoice,
     /// File to write: .png, or .exr for the numbers themselves.
     ///
     /// A colour PNG holds the tone-mapped picture and a colour EXR linear light. A visibility PNG is grey with 16 bits, 0

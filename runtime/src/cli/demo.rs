@@ -5,16 +5,16 @@ use super::draw::{open_gpu, set_threads, technique, view};
 use super::exit::Failure;
 use super::files::{displayed, make_folder, write_rgb};
 use super::out;
-use super::place::CameraChoice;
 use super::terminal::Terminal;
-use super::when::label;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use sunbake::BakeReport;
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{Date, DayRequest};
+use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::{mean, visibility_difference};
+use sunbake_runtime::light::clock_label;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::sheet::{Table, heat, heat_map};
 use sunbake_runtime::technique::{Technique, Truth};
@@ -147,7 +147,7 @@ fn draw_column(technique: &mut dyn Technique, shot: &Shot, t: f64) -> Result<Col
         heat_map(&difference.reduced(SUPERSAMPLE)),
     ];
     let cost = ColumnCost { t, mean_error: mean(&difference), baked_seconds, truth_seconds };
-    Ok(Column { clock: label(shot.stage.path.as_ref(), t), pictures, cost })
+    Ok(Column { clock: clock_label(shot.stage.path.as_ref(), t), pictures, cost })
 }
 
 fn sheet(columns: &[Column], baked: &BakeReport) -> Table {

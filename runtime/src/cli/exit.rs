@@ -7,8 +7,10 @@ use sunbake::BakeError;
 use sunbake::disk::read::ReadError;
 use sunbake::report::folder::FolderError;
 use sunbake::scene::ErrorClass;
-use sunbake_runtime::compare::ComparisonError;
+use sunbake_runtime::camera::CameraError;
+use sunbake_runtime::compare::CompareError;
 use sunbake_runtime::gpu::GpuError;
+use sunbake_runtime::light::TimeError;
 use sunbake_runtime::stage::StageError;
 
 /// A failure with its exit code.
@@ -29,11 +31,6 @@ impl Failure {
     /// Reading or writing failed.
     pub fn io(message: impl Into<String>) -> Self {
         Self { code: 2, error: message.into().into() }
-    }
-
-    /// What was given is no good.
-    pub fn bad_input(message: impl Into<String>) -> Self {
-        Self { code: 3, error: message.into().into() }
     }
 
     /// Something is above a limit that was set for it.
@@ -71,13 +68,48 @@ impl From<BakeError> for Failure {
     }
 }
 
-impl From<ComparisonError> for Failure {
-    fn from(error: ComparisonError) -> Self {
+impl From<CompareError> for Failure {
+    fn from(error: CompareError) -> Self {
         match error {
-            ComparisonError::Stage(error) => error.into(),
-            ComparisonError::Reference { .. } => Self { code: 5, error: error.into() },
-            ComparisonError::Cancelled => Self { code: 130, error: error.into() },
+            CompareError::Stage(error) => error.into(),
+            CompareError::Bake(error) => error.into(),
+            CompareError::Camera(error) => error.into(),
+            CompareError::Time(error) => error.into(),
+            CompareError::Gpu(error) => error.into(),
+            CompareError::WorkFolder(_) => Self { code: 2, error: error.into() },
+            CompareError::OtherScene { .. } => Self { code: 3, error: error.into() },
+            CompareError::TechniqueName(_) => Self { code: 1, error: error.into() },
+            CompareError::ReferenceNotInSet(_) => Self::usage(format!("{error}: give another --against")),
+            CompareError::NoSun => {
+                Self::usage(format!("{error}: choose another --date, or a set that was baked with a sun"))
+            }
+            CompareError::TooManyPixels { .. } => {
+                Self::usage(format!("{error}: give a smaller --size, or fewer --at or --camera"))
+            }
+            CompareError::Reference { .. } => Self { code: 5, error: error.into() },
+            CompareError::Cancelled => Self { code: 130, error: error.into() },
         }
+    }
+}
+
+impl From<CameraError> for Failure {
+    fn from(error: CameraError) -> Self {
+        let remedy = match &error {
+            CameraError::NoSuchCamera { .. } => "leave --camera out, or give ex,ey,ez,tx,ty,tz[,fov]",
+            CameraError::PointsTooClose => "give two points further apart",
+        };
+        Self::usage(format!("{error}; {remedy}"))
+    }
+}
+
+impl From<TimeError> for Failure {
+    fn from(error: TimeError) -> Self {
+        let remedy = match &error {
+            TimeError::NoSun => "give --at from 0 to 1, or leave it out",
+            TimeError::NoClock => "give --at from 0 to 1",
+            TimeError::OutsidePath { .. } => "give a time between",
+        };
+        Self::usage(format!("{error}: {remedy}"))
     }
 }
 

@@ -5,10 +5,10 @@ use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads
 use super::exit::Failure;
 use super::files::{kind, write_color, write_visibility};
 use super::out;
-use super::when::label;
 use serde_json::json;
 use std::time::Instant;
 use sunbake_runtime::Shot;
+use sunbake_runtime::light::clock_label;
 
 /// Draws one picture.
 pub fn run(args: &FrameArgs) -> Result<(), Failure> {
@@ -27,7 +27,7 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     }
     let seconds = start.elapsed().as_secs_f64();
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
-    let clock = label(stage.path.as_ref(), t);
+    let clock = clock_label(stage.path.as_ref(), t);
     let effects = technique.effects(&shot, kind_of(&moment, args.output));
     if args.manners.explain {
         explain(technique.as_ref(), &effects);

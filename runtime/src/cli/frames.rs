@@ -6,9 +6,9 @@ use super::exit::Failure;
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
 use super::out;
 use super::terminal::Terminal;
-use super::when::label;
 use serde_json::json;
 use std::time::Instant;
+use sunbake_runtime::light::clock_label;
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
 use sunbake_runtime::{Raster, Shot};
 
@@ -42,7 +42,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
         };
         let name = format!("frame_{i:04}.png");
         write_rgb(&args.output_folder.join(&name), &picture)?;
-        let clock = label(stage.path.as_ref(), t);
+        let clock = clock_label(stage.path.as_ref(), t);
         drawn.push(json!({ "file": name, "t": t, "clock": clock }));
         small.push((thumbnail(&picture, SHEET_PICTURE_WIDTH), clock));
         moving.push(thumbnail(&picture, ANIMATION_WIDTH));

@@ -1,27 +1,7 @@
-//! Cameras, as asked for.
+//! Cameras, as options name them.
 
-use super::exit::Failure;
 use glam::DVec3;
-use sunbake::scene::Scene;
-use sunbake_runtime::{Camera, Stage};
-
-/// A camera, as asked for.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CameraChoice {
-    /// The one that shows the scene well.
-    Default,
-    /// One of the scene's.
-    Named(String),
-    /// From a point towards a point, world space.
-    LookAt {
-        /// Where it stands.
-        eye_m: DVec3,
-        /// What it looks at.
-        target_m: DVec3,
-        /// Vertical field of view in degrees.
-        fov_deg: f64,
-    },
-}
+use sunbake_runtime::camera::CameraChoice;
 
 /// Vertical field of view unless given, in degrees.
 const FOV_DEG: f64 = 45.0;
@@ -49,36 +29,6 @@ pub fn parse_camera(text: &str) -> Result<CameraChoice, String> {
         return Err(format!("`{text}` looks from a point at the same point: give two points"));
     }
     Ok(CameraChoice::LookAt { eye_m, target_m, fov_deg })
-}
-
-impl CameraChoice {
-    /// The camera on a stage.
-    pub fn on(&self, stage: &Stage, aspect: f64) -> Result<Camera, Failure> {
-        match self {
-            Self::Default => Ok(Camera::default_of(stage, aspect)),
-            Self::Named(name) => named(&stage.scene, name),
-            Self::LookAt { eye_m, target_m, fov_deg } => {
-                let centre_m = stage.scene.centre_m;
-                let camera = Camera::look_at(*eye_m - centre_m, *target_m - centre_m, fov_deg.to_radians());
-                camera.ok_or_else(|| {
-                    Failure::usage("the camera's two points are too close: give two points further apart")
-                })
-            }
-        }
-    }
-}
-
-/// A camera of a scene by its name.
-pub fn named(scene: &Scene, name: &str) -> Result<Camera, Failure> {
-    let cameras = &scene.cameras;
-    if let Some(camera) = cameras.iter().find(|camera| camera.name.as_deref() == Some(name)) {
-        return Ok(Camera::from_scene(camera));
-    }
-    let names: Vec<&str> = cameras.iter().filter_map(|camera| camera.name.as_deref()).collect();
-    let known = if names.is_empty() { "the scene has none".into() } else { format!("it has {}", names.join(", ")) };
-    Err(Failure::usage(format!(
-        "there is no camera named {name}: {known}; leave --camera out, or give ex,ey,ez,tx,ty,tz[,fov]"
-    )))
 }
 
 #[cfg(test)]

@@ -11,8 +11,8 @@
 //! reach, meets nothing. Soft light's way widens with the disc. Pixels that show another surface than a ray meets, or where one
 //! ends, are not counted.
 
+use super::agreement::{EDGE_STEP, mean, neighbours, visibility_difference};
 use super::score::WRONG;
-use super::{EDGE_STEP, mean, neighbours, visibility_difference};
 use crate::image::Raster;
 use crate::light::Moment;
 use crate::light::disc::GOLDEN_ANGLE_RAD;
@@ -121,7 +121,7 @@ fn is_surface_of(shot: &Shot, pixel: usize, hit: &Hit, depth_m: f64) -> bool {
     let eye_m = shot.view.eye_m.as_dvec3();
     let goes_on = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].into_iter().all(|(x, y)| {
         let step = shot.view.ray_per_column * (x * WITHIN_PX) + shot.view.ray_per_row * (y * WITHIN_PX);
-        let beside = stage.see(eye_m, (ray + step).as_dvec3());
+        let beside = stage.primary_hit(eye_m, (ray + step).as_dvec3());
         beside.is_some_and(|beside| stage.geometry.normal(beside.triangle as usize).dot(normal).abs() > SAME_PLANE)
     });
     goes_on

@@ -1,4 +1,4 @@
-//! Limits for errors and costs, as `--fail-above` takes them: `visibility=0.02,wrong=0.01`.
+//! Limits for errors and costs, written as `visibility=0.02` or `wrong=0.01`.
 
 use super::report::{AboveLimit, LeftOut, LimitEntry, TechniqueEntry};
 use std::str::FromStr;
@@ -8,21 +8,21 @@ use std::str::FromStr;
 pub enum Limited {
     /// Mean error of visibility.
     Visibility,
-    /// What 99 in 100 pixels are not off by more than.
+    /// The error that 99 in 100 pixels do not exceed.
     P99,
     /// The largest error.
     Worst,
-    /// Share of pixels off by more than a half.
+    /// Share of pixels with an error above a half.
     Wrong,
     /// Mean error in penumbras.
     Penumbra,
-    /// Mean error outside of them.
+    /// Mean error outside of penumbras.
     Outside,
     /// One less the structural similarity of lit pictures.
     Dissimilarity,
     /// Milliseconds a frame.
     FrameMs,
-    /// MiB kept from frame to frame.
+    /// MiB of memory kept from frame to frame.
     Mib,
 }
 
@@ -39,7 +39,7 @@ impl Limited {
         ("mib", Self::Mib),
     ];
 
-    /// None where there was no pixel to tell by.
+    /// A technique's value; None where no pixel was compared.
     fn of(self, technique: &TechniqueEntry) -> Option<f64> {
         let error = &technique.error;
         let is_cost = matches!(self, Self::FrameMs | Self::Mib);
@@ -63,9 +63,9 @@ impl Limited {
 /// The most that is allowed of something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Of what.
+    /// What is limited.
     pub what: Limited,
-    /// How much.
+    /// The largest value allowed, in the unit of `what`.
     pub most: f64,
 }
 
@@ -86,16 +86,16 @@ impl FromStr for Limit {
 }
 
 impl Limit {
-    /// Who is above it, and of whom that cannot be told: those that were to be compared and were left out, and those that showed
-    /// nothing to tell by. A limit that nobody was held to is not kept.
+    /// Which techniques are above it, and of which that is unknown: those left out, and those without a compared pixel. A limit that
+    /// no technique was checked against is not kept.
     pub fn check(&self, techniques: &[TechniqueEntry], left_out: &[LeftOut]) -> LimitEntry {
         let key = Limited::ALL.iter().find(|(_, what)| *what == self.what).map_or("", |(key, _)| key);
         let above = techniques.iter().filter_map(|technique| {
             let value = self.what.of(technique)?;
             (value > self.most).then(|| AboveLimit { name: technique.name.clone(), value })
         });
-        let untold = techniques.iter().filter(|technique| self.what.of(technique).is_none());
-        let unchecked = untold.map(|technique| &technique.name).chain(left_out.iter().map(|left| &left.name));
+        let unknown = techniques.iter().filter(|technique| self.what.of(technique).is_none());
+        let unchecked = unknown.map(|technique| &technique.name).chain(left_out.iter().map(|left| &left.name));
         LimitEntry {
             key: key.into(),
             limit: self.most,

@@ -9,7 +9,7 @@
 //! * **Other surfaces.** Rasterising shows another surface there than a ray meets (at a silhouette, or through a crack between
 //!   triangles that do not share their corners), and the mask is right about that one.
 
-use super::neighbours;
+use super::agreement::neighbours;
 use crate::image::Raster;
 use crate::light::Moment;
 use crate::shot::Shot;
@@ -137,7 +137,7 @@ impl Excuses<'_> {
             Truth::hard_at(stage, ray, hit, step_m, self.moment, self.light)
         };
         self.rays(pixel).any(|ray| {
-            let Some(hit) = stage.see(self.eye_m(), ray.as_dvec3()) else { return is_lit };
+            let Some(hit) = stage.primary_hit(self.eye_m(), ray.as_dvec3()) else { return is_lit };
             let seen = Truth::hard_at(stage, ray, &hit, 0.0, self.moment, self.light);
             (seen == 1.0) == is_lit || (nearer(ray, &hit) == 1.0) == is_lit
         })
@@ -171,7 +171,7 @@ impl Excuses<'_> {
     fn is_of_other_surface(&self, pixel: usize, is_lit: bool, depth_m: f64) -> bool {
         let stage = self.shot.stage;
         if depth_m.is_infinite() {
-            return is_lit && self.rays(pixel).any(|ray| stage.see(self.eye_m(), ray.as_dvec3()).is_none());
+            return is_lit && self.rays(pixel).any(|ray| stage.primary_hit(self.eye_m(), ray.as_dvec3()).is_none());
         }
         let ray = self.shot.ray(pixel);
         let way = ray.as_dvec3().normalize();

@@ -1,147 +1,42 @@
-//! How two images of the same thing differ.
+//! Comparing techniques: all draw the same frames, and each picture is compared with a reference's.
 //!
-//! A difference is a picture of its own, so that it can be looked at as well as summed. Where two renderers agree on
-//! every number, they may still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it
-//! lies: pixels within one pixel of such an edge are counted apart ([`edges`]).
+//! [`run`] is one call from [`CompareSettings`] to [`Compared`], a report and its pictures:
+//!
+//! 1. `inputs` reads the set, or bakes the scene once for each count of lanes that some technique plays back.
+//! 2. `viewpoints` takes the cameras and times that are asked for, or finds cameras that see many shadow edges
+//!    (`shadow_edge_cameras`).
+//! 3. [`Comparison`] draws every frame with every technique and scores the pictures (`score`).
+//! 4. [`report`] is what is written: JSON by a schema, and a page. [`sheet`] is one picture of it. [`Limit`] checks the most that
+//!    was allowed.
+//!
+//! `agreement`, `mask` and `acne_and_leaks` compare two pictures in finer ways, for tests and measurements.
 
 mod acne_and_leaks;
+mod agreement;
 mod comparison;
+mod error;
+mod inputs;
 mod limits;
 mod mask;
 pub mod report;
+mod report_notes;
+mod run;
 mod score;
+mod settings;
+mod shadow_edge_cameras;
 mod sheet;
 mod technique;
+mod viewpoints;
 
 pub use acne_and_leaks::Defects;
-pub use comparison::{Comparison, ComparisonError, LitFrame, Outcome, SetOnDisk, codes, lit_by};
+pub use agreement::{Agreement, color_difference, edges, mean, visibility_difference};
+pub use comparison::{Comparison, LitFrame, Outcome, SetOnDisk, lit_picture_of, visibility_codes};
+pub use error::CompareError;
 pub use limits::{Limit, Limited};
 pub use mask::{FINE_PX, MaskAgreement};
+pub use run::{Compared, run};
 pub use score::{Score, Tally, luma, structural_similarity};
-pub use sheet::{Pair, sheet};
-pub use technique::{Playback, TechniqueSpec, selected};
-
-use crate::image::Raster;
-use crate::light::{codes_from_display, display_from_light};
-use crate::shot::Shot;
-use glam::Vec3;
-use serde::Serialize;
-
-/// Step in visibility between neighbours that counts as a shadow's edge.
-const EDGE_STEP: f32 = 4.0 / 255.0;
-
-/// What a comparison found.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Agreement {
-    /// Pixels compared.
-    pub pixels: usize,
-    /// Pixels that differ by no more than the tolerance.
-    pub within: usize,
-    /// Pixels that differ by more, at edges.
-    pub at_edges: usize,
-    /// Pixels that differ by more, elsewhere.
-    pub unexplained: usize,
-    /// Mean difference over all pixels.
-    pub mean: f64,
-    /// Largest difference; not a number where either image holds one.
-    pub worst: f64,
-}
-
-impl Agreement {
-    /// Compares a picture of differences with a tolerance. What is not a number is never within it.
-    pub fn new(difference: &Raster<f32>, edges: &[bool], tolerance: f32) -> Self {
-        let pixels = difference.pixels.len();
-        let over = |&(d, _): &(&f32, &bool)| d.is_nan() || *d > tolerance;
-        let pairs = || difference.pixels.iter().zip(edges);
-        let at_edges = pairs().filter(over).filter(|(_, edge)| **edge).count();
-        let unexplained = pairs().filter(over).count() - at_edges;
-        let worst = difference.pixels.iter().map(|&d| f64::from(d));
-        let worst = worst.fold(0.0, |a: f64, d| if d.is_nan() || a.is_nan() { f64::NAN } else { a.max(d) });
-        let mean = mean(difference);
-        Self { pixels, within: pixels - at_edges - unexplained, at_edges, unexplained, mean, worst }
-    }
-
-    /// Share of pixels within the tolerance.
-    pub fn share_within(&self) -> f64 {
-        if self.pixels == 0 { 1.0 } else { self.within as f64 / self.pixels as f64 }
-    }
-}
-
-/// Mean over all pixels.
-pub fn mean(difference: &Raster<f32>) -> f64 {
-    let sum: f64 = difference.pixels.iter().map(|&d| f64::from(d)).sum();
-    sum / difference.pixels.len().max(1) as f64
-}
-
-/// Differences of visibility, pixel by pixel.
-pub fn visibility_difference(a: &Raster<f32>, b: &Raster<f32>) -> Raster<f32> {
-    let pixels = a.pixels.iter().zip(&b.pixels).map(|(a, b)| (a - b).abs());
-    Raster { size: a.size, pixels: pixels.collect() }
-}
-
-/// Differences of lit pictures as a display shows them: the largest of three channels, in steps of 1/255.
-pub fn color_difference(a: &Raster<Vec3>, b: &Raster<Vec3>) -> Raster<f32> {
-    let codes = |light: &Vec3| codes_from_display(display_from_light(*light));
-    let pixel = |(a, b): (&Vec3, &Vec3)| {
-        if !a.is_finite() || !b.is_finite() {
-            return f32::NAN;
-        }
-        let (a, b) = (codes(a), codes(b));
-        f32::from((0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap_or(0)) / 255.0
-    };
-    Raster { size: a.size, pixels: a.pixels.iter().zip(&b.pixels).map(pixel).collect() }
-}
-
-/// Pixels within one pixel of an edge: of a triangle, or of a shadow in `visibility`.
-pub fn edges(shot: &Shot, visibility: &Raster<f32>) -> Vec<bool> {
-    let hits = shot.hits();
-    let [width, height] = shot.view.size;
-    let triangle = |i: usize| hits[i].map(|hit| hit.triangle);
-    let is_edge = |i: usize| {
-        let around: Vec<usize> = neighbours(i, width as usize, height as usize).collect();
-        let (mut least, mut most) = (f32::INFINITY, f32::NEG_INFINITY);
-        for &n in &around {
-            (least, most) = (least.min(visibility.pixels[n]), most.max(visibility.pixels[n]));
-        }
-        most - least > EDGE_STEP || around.iter().any(|&n| triangle(n) != triangle(i))
-    };
-    (0..hits.len()).map(is_edge).collect()
-}
-
-/// A pixel and those around it.
-fn neighbours(i: usize, width: usize, height: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (i % width, i / width);
-    let rows = y.saturating_sub(1)..=(y + 1).min(height - 1);
-    rows.flat_map(move |row| (x.saturating_sub(1)..=(x + 1).min(width - 1)).map(move |column| row * width + column))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_corrupted_pixel_is_caught() {
-        let a = Raster::filled([8, 8], 0.25);
-        let no_edges = [false; 64];
-        assert_eq!(Agreement::new(&visibility_difference(&a, &a), &no_edges, 0.0).within, 64);
-        for corruption in [0.5, f32::NAN] {
-            let mut b = a.clone();
-            b.pixels[19] = corruption;
-            let found = Agreement::new(&visibility_difference(&a, &b), &no_edges, 1.0 / 255.0);
-            assert_eq!((found.within, found.unexplained), (63, 1));
-            assert!(found.worst.is_nan() || (found.worst - 0.25).abs() < 1e-6);
-        }
-    }
-
-    #[test]
-    fn one_corrupted_color_is_caught() {
-        let a = Raster::filled([4, 4], Vec3::splat(0.2));
-        let mut b = a.clone();
-        b.pixels[5].y += 0.1;
-        let found = Agreement::new(&color_difference(&a, &b), &[false; 16], 1.0 / 255.0);
-        assert_eq!(found.unexplained, 1);
-        b.pixels[5].y = f32::NAN;
-        let found = Agreement::new(&color_difference(&a, &b), &[false; 16], 1.0 / 255.0);
-        assert!(found.unexplained == 1 && found.worst.is_nan());
-    }
-}
+pub use settings::{CompareProgress, CompareSettings, CompareSource};
+pub use shadow_edge_cameras::{NamedCamera, shadow_edge_cameras};
+pub use sheet::{BestPair, sheet};
+pub use technique::{Playback, TechniqueNameError, TechniqueSpec, selected};

@@ -1,10 +1,10 @@
-//! How far a technique is from what it is held against, in a few numbers.
+//! The errors of a technique against the reference, in a few numbers.
 //!
-//! Only pixels that show a surface count: how much sky a camera sees would otherwise set the mean. The *penumbra* is where the
-//! reference is neither lit nor dark; what is wrong outside of it is a shadow in the wrong place, or none. Structural similarity
+//! Only pixels that show a surface count; otherwise the mean would depend on how much sky a camera sees. The *penumbra* is where the
+//! reference is neither lit nor dark; an error outside of it is a shadow in the wrong place, or a missing one. Structural similarity
 //! (Wang et al., "Image quality assessment: from error visibility to structural similarity", *IEEE Transactions on Image
-//! Processing* 13, 2004) is of the lit pictures' luma as a display shows them, over windows of eight by eight pixels. What is not a
-//! number is as wrong as can be, and counted.
+//! Processing* 13, 2004) is taken of the lit pictures' luma as a display shows them, over windows of eight by eight pixels. NaN counts
+//! as an error of 1, and such pixels are counted.
 
 use crate::image::Raster;
 use crate::light::{LUMINANCE, codes_from_display, display_from_light};
@@ -12,9 +12,9 @@ use glam::Vec3;
 use image_compare::{Algorithm, gray_similarity_structure};
 use serde::{Deserialize, Serialize};
 
-/// Off by more than this is wrong: lit where it is dark, or dark where it is lit.
+/// A pixel with a larger error is wrong: lit where it is dark, or dark where it is lit.
 pub const WRONG: f32 = 0.5;
-/// What the reference sees of the sun in its penumbras.
+/// Visibility of the sun by the reference in its penumbras, from the least to the most.
 pub const PENUMBRA: [f32; 2] = [0.02, 0.98];
 
 /// Errors of visibility, 0 to 1, over pixels that show a surface.
@@ -25,11 +25,11 @@ pub struct Score {
     pub pixels: u64,
     /// Mean error.
     pub mean: f64,
-    /// 99 in 100 pixels are off by no more.
+    /// The error that 99 in 100 pixels do not exceed.
     pub p99: f64,
     /// The largest error.
     pub worst: f64,
-    /// Share of pixels that are off by more than a half.
+    /// Share of pixels with an error above a half.
     pub wrong_share: f64,
     /// Mean error where the reference sees from 2 to 98 hundredths of the sun; null where it has no such pixel.
     pub penumbra: Option<f64>,
@@ -39,11 +39,11 @@ pub struct Score {
     pub penumbra_share: f64,
     /// Mean structural similarity of the lit pictures, 1 for equal ones.
     pub ssim: f64,
-    /// Pixels whose visibility is no number; each counts as an error of 1.
+    /// Pixels whose visibility is NaN; each counts as an error of 1.
     pub not_numbers: u64,
 }
 
-/// Errors of several pictures, gathered.
+/// Errors of one or more pictures, gathered.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
     errors: Vec<f32>,
@@ -54,7 +54,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Adds a picture of visibility, held against another, where `shows_surface`.
+    /// Adds the errors of a picture of visibility, where `shows_surface`.
     pub fn add(&mut self, seen: &Raster<f32>, reference: &Raster<f32>, shows_surface: impl Fn(usize) -> bool) {
         for (i, (&seen, &reference)) in seen.pixels.iter().zip(&reference.pixels).enumerate() {
             if !shows_surface(i) {
@@ -70,8 +70,8 @@ impl Tally {
         }
     }
 
-    /// Adds how like each other two lit pictures are.
-    pub fn add_likeness(&mut self, ssim: f64) {
+    /// Adds the structural similarity of two lit pictures.
+    pub fn add_similarity(&mut self, ssim: f64) {
         self.ssim = (self.ssim.0 + ssim, self.ssim.1 + 1);
     }
 
@@ -107,7 +107,7 @@ impl Tally {
     }
 }
 
-/// What so many in a hundred values do not exceed; 0 of none.
+/// The value that `percent` in a hundred do not exceed; 0 without values.
 fn percentile(values: &[f32], percent: usize) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -126,8 +126,7 @@ pub fn luma(light: &Raster<Vec3>) -> Raster<u8> {
     Raster { size: light.size, pixels: light.pixels.iter().map(grey).collect() }
 }
 
-/// How like each other two pictures of one size are: 1 for equal ones, 0 for strangers. Pictures of different sizes, or without
-/// a pixel, are strangers.
+/// Structural similarity of two pictures: 1 for equal ones; 0 also for pictures of different sizes, or without a pixel.
 pub fn structural_similarity(a: &Raster<u8>, b: &Raster<u8>) -> f64 {
     let grey = |picture: &Raster<u8>| {
         let [width, height] = picture.size;
@@ -196,15 +195,15 @@ mod tests {
             whole.add(picture, &lit, |_| true);
             let mut part = Tally::default();
             part.add(picture, &lit, |_| true);
-            part.add_likeness(0.5);
-            whole.add_likeness(0.5);
+            part.add_similarity(0.5);
+            whole.add_similarity(0.5);
             parts.append(&part);
         }
         assert_eq!(whole.score(), parts.score());
     }
 
     #[test]
-    fn likeness_falls_with_what_is_changed() {
+    fn similarity_falls_with_what_is_changed() {
         let ramp = Raster { size: [32, 32], pixels: (0..1024u32).map(|i| (i % 32 * 8) as u8).collect::<Vec<u8>>() };
         let mut patched = ramp.clone();
         patched.pixels[..96].fill(255);

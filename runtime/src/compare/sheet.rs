@@ -1,6 +1,6 @@
-//! A comparison on one sheet: a baked set beside a live technique, and how far each is from the reference.
+//! A comparison as one picture: the best baked and the best live technique, and the error of each.
 
-use super::comparison::{Outcome, lit_by};
+use super::comparison::{Outcome, lit_picture_of};
 use super::report::TechniqueEntry;
 use super::visibility_difference;
 use crate::image::Raster;
@@ -8,43 +8,41 @@ use crate::light::{codes_from_display, display_from_light};
 use crate::sheet::{Table, heat, heat_map};
 use crate::texture::srgb_from_linear;
 
-/// Columns of the sheet, and those that stand side by side.
+/// Most columns of the sheet.
 const COLUMNS: usize = 4;
-/// Width of a picture.
-const WIDTH_PX: u32 = 420;
+const PICTURE_WIDTH_PX: u32 = 420;
 
-/// Which two techniques to set side by side, by their places in the outcome.
+/// The two techniques that are shown side by side, as indices in [`Outcome::techniques`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pair {
-    /// To be shown first.
-    pub ours: usize,
-    /// To be shown second.
-    pub theirs: usize,
+pub struct BestPair {
+    /// The best baked technique.
+    pub baked: usize,
+    /// The best live technique, or truth where nothing live was drawn.
+    pub live: usize,
 }
 
-impl Pair {
-    /// The best baked technique and the best live one, by how like the reference's their lit pictures are; rays stand in where
-    /// nothing live was drawn.
-    pub fn best(techniques: &[TechniqueEntry]) -> Option<Self> {
+impl BestPair {
+    /// Best is whose lit pictures are most like the reference's by structural similarity, then whose mean error is least. None where
+    /// nothing baked was drawn, or nothing beside it.
+    pub fn of(techniques: &[TechniqueEntry]) -> Option<Self> {
         let best = |families: &[&str]| {
             let all = techniques.iter().enumerate().filter(|(_, one)| families.contains(&one.family.as_str()));
-            // Likeness to four digits: beyond that it is the mean error that tells.
+            // Similarity counts to four digits; beyond that the mean error decides.
             let rank = |one: &TechniqueEntry| (-(one.error.ssim * 1e4).round(), one.error.mean);
             let order = |a: (f64, f64), b: (f64, f64)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
             all.min_by(|a, b| order(rank(a.1), rank(b.1))).map(|(i, _)| i)
         };
-        let theirs = best(&["map", "volumes"]).or_else(|| best(&["truth"]))?;
-        Some(Self { ours: best(&["baked"])?, theirs })
+        let live = best(&["map", "volumes"]).or_else(|| best(&["truth"]))?;
+        Some(Self { baked: best(&["baked"])?, live })
     }
 }
 
-/// The sheet: at moments spread over the day, through each camera in turn, both techniques, and their errors. `clocks` is what times
-/// are called.
-pub fn sheet(title: &[String], outcome: &Outcome, pair: Pair, clocks: &[String]) -> Raster<[u8; 3]> {
+/// Draws both techniques and their errors at times spread over the day, through the cameras in turn. `clocks` are the times' labels.
+pub fn sheet(title: &[String], outcome: &Outcome, pair: BestPair, clocks: &[String]) -> Raster<[u8; 3]> {
     let columns = columns(outcome, outcome.frames.len() / clocks.len().max(1));
-    let small = |picture: Raster<[u8; 3]>| crate::sheet::thumbnail(&picture, WIDTH_PX);
+    let small = |picture: Raster<[u8; 3]>| crate::sheet::thumbnail(&picture, PICTURE_WIDTH_PX);
     let lit = |technique: usize, frame: usize| {
-        let light = lit_by(&outcome.frames[frame], &visibility(outcome, technique, frame));
+        let light = lit_picture_of(&outcome.frames[frame], &visibility(outcome, technique, frame));
         let shown = light.pixels.iter().map(|&light| codes_from_display(display_from_light(light)));
         small(Raster { size: light.size, pixels: shown.collect() })
     };
@@ -56,20 +54,20 @@ pub fn sheet(title: &[String], outcome: &Outcome, pair: Pair, clocks: &[String])
         columns.iter().map(|&frame| picture(technique, frame)).collect::<Vec<_>>()
     };
     let name = |technique: usize| outcome.techniques[technique].family.clone();
-    let [ours, theirs] = [name(pair.ours), name(pair.theirs)];
+    let [baked, live] = [name(pair.baked), name(pair.live)];
     let mean = |technique: usize, frame: usize| outcome.techniques[technique].frames[frame].error.mean;
     let table = Table {
         title: title.to_vec(),
         rows: vec![
-            (ours.clone(), row(&lit, pair.ours)),
-            (theirs.clone(), row(&lit, pair.theirs)),
-            (format!("{ours}, error"), row(&error, pair.ours)),
-            (format!("{theirs}, error"), row(&error, pair.theirs)),
+            (baked.clone(), row(&lit, pair.baked)),
+            (live.clone(), row(&lit, pair.live)),
+            (format!("{baked}, error"), row(&error, pair.baked)),
+            (format!("{live}, error"), row(&error, pair.live)),
         ],
         heads: columns.iter().map(|&frame| clocks[outcome.frames[frame].time].clone()).collect(),
         feet: columns
             .iter()
-            .map(|&frame| format!("{:.4} and {:.4}", mean(pair.ours, frame), mean(pair.theirs, frame)))
+            .map(|&frame| format!("{:.4} and {:.4}", mean(pair.baked, frame), mean(pair.live, frame)))
             .collect(),
         band: columns.len().max(1) as u32,
         legend: (
@@ -82,7 +80,7 @@ pub fn sheet(title: &[String], outcome: &Outcome, pair: Pair, clocks: &[String])
 }
 
 fn visibility(outcome: &Outcome, technique: usize, frame: usize) -> Raster<f32> {
-    let codes = &outcome.seen[technique][frame];
+    let codes = &outcome.visibility[technique][frame];
     Raster { size: codes.size, pixels: codes.pixels.iter().map(|&code| f32::from(code) / 255.0).collect() }
 }
 

@@ -1,8 +1,8 @@
 //! What can be compared, and what it is called.
 //!
-//! A name is parts with colons between them: `baked:16:lanes3:filtered`, `volumes`, `map:pcss`, `truth:hard`. What a user asks for
-//! is a name as well, and stands for all whose parts hold its own: `baked` is every way to play a set, `baked:8` those with eight
-//! bits.
+//! A name is parts with colons between them: `baked:16:lanes3:filtered`, `volumes`, `map:pcss`, `truth:hard`. A user may ask for a
+//! part of a name, which selects every technique that has those parts: `baked` is every way to play a set back, `baked:8` those with
+//! eight bits.
 
 use crate::shadow_maps::Variant;
 use crate::technique::Truth;
@@ -11,7 +11,7 @@ use std::fmt::{Display, Formatter};
 use sunbake::maps::Bits;
 use sunbake_shaders::Filter;
 
-/// A way to find visibility, with all that decides what it shows.
+/// A technique with every setting that its pictures depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TechniqueSpec {
     /// A baked set, played back.
@@ -27,11 +27,11 @@ pub enum TechniqueSpec {
 /// How a set is played back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Playback {
-    /// Bits of a stored time.
+    /// Bits of a stored time, 8 or 16.
     pub bits: Bits,
-    /// Lanes across the sun's disc.
+    /// Lanes across the sun's disc, 1 or more.
     pub lanes: usize,
-    /// How times are filtered.
+    /// How the four texels around a pixel are combined.
     pub filter: Filter,
 }
 
@@ -50,8 +50,41 @@ impl Display for TechniqueSpec {
     }
 }
 
+/// Why a name selects no technique, or not one.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TechniqueNameError {
+    /// No technique has it.
+    #[error("there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N", known.join(", "))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// Names there are.
+        known: Vec<String>,
+    },
+    /// One technique was asked for, and several have it.
+    #[error("`{name}` is several techniques: {}", found.join(", "))]
+    Several {
+        /// The name.
+        name: String,
+        /// Names of the techniques.
+        found: Vec<String>,
+    },
+}
+
 impl TechniqueSpec {
-    /// What is compared unless told otherwise, of a set with these bits and each of these counts of lanes.
+    /// The one technique that a name selects: of any set, with one, three or five lanes.
+    pub fn named(name: &str) -> Result<Self, TechniqueNameError> {
+        let all = Self::all(Bits::Sixteen, &[1, 3, 5]);
+        match selected(&all, &[name.to_owned()])?.as_slice() {
+            [one] => Ok(*one),
+            several => Err(TechniqueNameError::Several {
+                name: name.to_owned(),
+                found: several.iter().map(ToString::to_string).collect(),
+            }),
+        }
+    }
+
+    /// What is compared unless told otherwise, of sets with these counts of lanes. Of 16 bits, 8 are made as well.
     pub fn all(most_bits: Bits, lane_counts: &[usize]) -> Vec<Self> {
         let bits: &[Bits] = if most_bits == Bits::Sixteen { &[Bits::Sixteen, Bits::Eight] } else { &[Bits::Eight] };
         let mut all = Vec::new();
@@ -78,7 +111,7 @@ impl TechniqueSpec {
         }
     }
 
-    /// Whether it takes the sun for a point: it is right or wrong about the sun's centre, and knows no penumbra.
+    /// Whether it takes the sun for a point, and so draws no penumbra.
     pub fn is_hard(&self) -> bool {
         match self {
             Self::Baked(_) => false,
@@ -88,8 +121,8 @@ impl TechniqueSpec {
         }
     }
 
-    /// Whether a name that somebody asks for means it.
-    fn is_meant_by(&self, asked: &str) -> bool {
+    /// Whether it has all parts of a name.
+    fn is_selected_by(&self, asked: &str) -> bool {
         let name = self.to_string();
         let parts: Vec<&str> = name.split(':').collect();
         let mut asked = asked.split(':');
@@ -99,9 +132,9 @@ impl TechniqueSpec {
     }
 }
 
-/// Those of `all` that names mean, in the order of `all`; then modes of volumes and truths that are asked for by their own names.
-/// No names mean all.
-pub fn selected(all: &[TechniqueSpec], names: &[String]) -> Result<Vec<TechniqueSpec>, String> {
+/// Those of `all` that have the parts of some name, in the order of `all`; then modes of volumes and soft truths that are asked for
+/// by their own names. Without names, all.
+pub fn selected(all: &[TechniqueSpec], names: &[String]) -> Result<Vec<TechniqueSpec>, TechniqueNameError> {
     if names.is_empty() {
         return Ok(all.to_vec());
     }
@@ -109,10 +142,10 @@ pub fn selected(all: &[TechniqueSpec], names: &[String]) -> Result<Vec<Technique
     let mut found: Vec<TechniqueSpec> = Vec::new();
     let mut extra: Vec<TechniqueSpec> = Vec::new();
     for name in names {
-        let meant: Vec<TechniqueSpec> = all.iter().copied().filter(|one| one.is_meant_by(name)).collect();
+        let matching: Vec<TechniqueSpec> = all.iter().copied().filter(|one| one.is_selected_by(name)).collect();
         let named = others.iter().copied().find(|one| one.to_string() == *name).or_else(|| soft_truth(name));
         match named {
-            _ if !meant.is_empty() => found.extend(meant),
+            _ if !matching.is_empty() => found.extend(matching),
             Some(one) => extra.push(one),
             None => return Err(unknown(all, name)),
         }
@@ -135,19 +168,15 @@ fn soft_truth(name: &str) -> Option<TechniqueSpec> {
     Some(TechniqueSpec::Truth(Truth::Soft { rays }))
 }
 
-fn unknown(all: &[TechniqueSpec], name: &str) -> String {
-    let names: Vec<String> = all.iter().map(ToString::to_string).collect();
-    format!(
-        "there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N",
-        names.join(", ")
-    )
+fn unknown(all: &[TechniqueSpec], name: &str) -> TechniqueNameError {
+    TechniqueNameError::Unknown { name: name.to_owned(), known: all.iter().map(ToString::to_string).collect() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn names(asked: &[&str]) -> Result<Vec<String>, String> {
+    fn names(asked: &[&str]) -> Result<Vec<String>, TechniqueNameError> {
         let all = TechniqueSpec::all(Bits::Sixteen, &[1, 3]);
         let asked: Vec<String> = asked.iter().map(|&name| name.to_owned()).collect();
         Ok(selected(&all, &asked)?.iter().map(ToString::to_string).collect())
@@ -165,5 +194,13 @@ mod tests {
         for bad in ["", "8", "baked:9", "map:", "truth:soft:0", "truth:soft:x", "volume", "baked:16:16x"] {
             assert!(names(&[bad]).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_reference_is_one_technique() {
+        assert_eq!(TechniqueSpec::named("truth:soft"), Ok(TechniqueSpec::Truth(Truth::Soft { rays: 64 })));
+        assert!(
+            matches!(TechniqueSpec::named("map"), Err(TechniqueNameError::Several { found, .. }) if found.len() == 10)
+        );
     }
 }

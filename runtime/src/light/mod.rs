@@ -14,10 +14,12 @@
 pub(crate) mod disc;
 mod lamp;
 mod sky;
+mod time_choice;
 mod tone;
 
 pub use disc::SunDisc;
 pub use lamp::{LampMoment, WITHOUT_END};
+pub use time_choice::{TimeChoice, TimeError, clock_label};
 pub use tone::{codes_from_display, display_from_light};
 
 use crate::camera::View;

@@ -181,7 +181,7 @@ pub fn camera_in_shadow(stage: &Stage, towards_light: DVec3, pick: usize) -> Opt
     let eye_m = eyes.into_iter().next()?;
     (0..count).find_map(|i| {
         let target_m = stage.geometry.point(triangle(i + 1), [0.3, 0.3]);
-        let hit = stage.see(eye_m, target_m - eye_m)?;
+        let hit = stage.primary_hit(eye_m, target_m - eye_m)?;
         let is_seen = hit.distance_m > 0.05 * stage.scene.half_extent_m.max_element();
         is_seen.then(|| Camera::look_at(eye_m, target_m, 1.2)).flatten()
     })

@@ -1,11 +1,13 @@
 //! Every option of `sunplay compare`.
 
 use super::super::args::{RendererChoice, SunArgs, parse_size};
-use super::super::place::{CameraChoice, parse_camera};
-use super::super::when::{When, parse_when};
+use super::super::place::parse_camera;
+use super::super::when::parse_when;
 use clap::Args as ClapArgs;
 use std::path::PathBuf;
+use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::Limit;
+use sunbake_runtime::light::TimeChoice;
 
 #[derive(Debug, ClapArgs)]
 pub struct CompareArgs {
@@ -36,7 +38,7 @@ pub struct CompareArgs {
     ///
     /// Unless given, five times from a low sun in the morning to one in the evening.
     #[arg(long, value_name = "HH:MM|T", value_parser = parse_when)]
-    pub at: Vec<When>,
+    pub at: Vec<TimeChoice>,
     /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`. May be given several times. [default: three]
     ///
     /// Unless given, three cameras that see the edges of shadows: the scene's own, all of it, or a part from close by.

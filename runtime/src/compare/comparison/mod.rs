@@ -1,138 +1,77 @@
-//! A comparison: every technique draws every frame, and each picture is held against the reference's.
+//! A comparison: every technique draws every frame, and each picture is compared with the reference's.
 //!
-//! Contenders are built, drawn and dropped one after the other, so that only one is in memory. Each draws all frames once to warm
-//! up, then all of them so many rounds; the least of a frame's times counts. Nothing is kept from frame to frame, as under a sun
-//! that moves: shadow maps and silhouettes are found anew.
+//! Techniques are built, drawn with and dropped one after the other, so that only one is in memory. Each draws all frames once to
+//! warm up, and then all of them again in each round; the least of a frame's times counts. Nothing is kept from frame to frame, as
+//! under a sun that moves: shadow maps and silhouettes are found anew.
 
+mod drawing;
+mod lit_frame;
 mod scoring;
-mod sets;
+mod set_reader;
 mod times;
 
-pub use sets::SetOnDisk;
+pub use lit_frame::{LitFrame, lit_picture_of, visibility_codes};
+pub use set_reader::SetOnDisk;
 
-use super::report::{LeftOut, ReferenceEntry, TechniqueEntry, Times};
+use super::CompareError;
+use super::report::{LeftOut, ReferenceEntry, TechniqueEntry};
 use super::score::{Tally, luma};
 use super::technique::TechniqueSpec;
 use crate::camera::View;
-use crate::gpu::{Gpu, GpuError, VolumeSettings};
+use crate::gpu::Gpu;
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::shade::lit_picture;
-use crate::shadow_maps::{MapSettings, Means, Variant};
 use crate::shot::Shot;
-use crate::stage::{Stage, StageError};
-use crate::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Truth, Volumes};
-use crate::volumes::Savings;
-use glam::Vec3;
-use sets::SetReader;
-use std::time::Instant;
+use crate::stage::Stage;
+use crate::technique::{Technique, Truth};
+use drawing::{DrawnFrames, NotDrawn};
+use lit_frame::lit_frames;
+use set_reader::SetReader;
 use sunbake_shaders::AmbientModel;
-use times::{mean_times, timed_frame};
+use times::mean_times;
 
-/// What is compared, where and when.
+/// What is compared: techniques, cameras and times.
 pub struct Comparison<'a> {
-    /// Sets to play back; each has another count of lanes.
+    /// Sets to play back, each with another count of lanes.
     pub sets: &'a [SetOnDisk],
-    /// What draws; the CPU where there is none.
+    /// What draws. Without it the CPU draws what it can.
     pub gpu: Option<&'a Gpu>,
-    /// Who takes part.
+    /// Techniques to compare.
     pub techniques: &'a [TechniqueSpec],
-    /// Whom they are held against.
+    /// The reference.
     pub against: TechniqueSpec,
-    /// Through what; all of one size.
+    /// Cameras, all with pictures of one size.
     pub views: &'a [View],
-    /// When, on the sun's path.
+    /// Times on the sun's path, 0 to 1.
     pub times: &'a [f64],
-    /// Edge of shadow maps; as variants have it unless given.
+    /// Edge of shadow maps. None: as each variant has it.
     pub map_size_texels: Option<u32>,
-    /// How often each frame is drawn, at least once.
+    /// How often each frame is drawn after warming up, at least once.
     pub rounds: u32,
 }
 
-/// A frame, as it looks with the sun wholly hidden and wholly seen.
-pub struct LitFrame {
-    /// Index in [`Comparison::views`].
-    pub camera: usize,
-    /// Index in [`Comparison::times`].
-    pub time: usize,
-    /// Linear light without the sun.
-    pub dark: Raster<Vec3>,
-    /// Linear light where every surface that faces the sun sees it.
-    pub open: Raster<Vec3>,
-    /// What the reference sees of the sun.
-    pub reference: Raster<f32>,
-}
-
-/// What came of it.
+/// What a comparison found.
 pub struct Outcome {
-    /// The frames, cameras in turn at each time.
+    /// The frames: all cameras at the first time, then at the next.
     pub frames: Vec<LitFrame>,
-    /// Who took part, with what they cost and how far they were off.
+    /// Techniques that were compared, with costs and errors.
     pub techniques: Vec<TechniqueEntry>,
-    /// What each of them saw, frame by frame.
-    pub seen: Vec<Vec<Raster<u8>>>,
-    /// Who did not take part.
+    /// Visibility by each technique in each frame, 0 to 255: `visibility[technique][frame]`.
+    pub visibility: Vec<Vec<Raster<u8>>>,
+    /// Techniques that could not be drawn.
     pub left_out: Vec<LeftOut>,
     /// The reference.
     pub reference: ReferenceEntry,
 }
 
-/// Why there is no outcome.
-#[derive(Debug, thiserror::Error)]
-pub enum ComparisonError {
-    /// A set cannot be read.
-    #[error(transparent)]
-    Stage(#[from] StageError),
-    /// The reference cannot be drawn.
-    #[error("{name}, which all are to be held against, cannot be drawn: {reason}")]
-    Reference {
-        /// Its name.
-        name: String,
-        /// Why.
-        reason: String,
-    },
-    /// The listener asked to stop.
-    #[error("stopped before the end; nothing was written")]
-    Cancelled,
-}
-
-/// Why a technique drew nothing.
-enum Absent {
-    Gpu(GpuError),
-    Stage(StageError),
-    Cancelled,
-    Other(String),
-}
-
-impl From<GpuError> for Absent {
-    fn from(error: GpuError) -> Self {
-        Self::Gpu(error)
-    }
-}
-
-impl From<StageError> for Absent {
-    fn from(error: StageError) -> Self {
-        Self::Stage(error)
-    }
-}
-
-/// What a technique drew.
-struct Drawn {
-    seen: Vec<Raster<f32>>,
-    times: Vec<Times>,
-    setup_s: f64,
-    memory_bytes: u64,
-    plan: Vec<String>,
-}
-
-/// A shot at a moment.
-struct Take<'a, 's> {
+/// A camera at a time of day.
+struct FrameRequest<'a, 's> {
     shot: &'a Shot<'s>,
     moment: Moment,
 }
 
 impl Comparison<'_> {
-    /// Frames that are drawn in all, rounds and warming up counted: what `on_frame` is called for.
+    /// Frames that are drawn in all, warming up and rounds included: how often `on_frame` is called.
     pub fn frame_count(&self) -> u64 {
         let frames = (self.views.len() * self.times.len()) as u64;
         let rounds =
@@ -141,212 +80,94 @@ impl Comparison<'_> {
     }
 
     /// Draws and compares on a stage that holds no times. `on_frame` is called after each frame, and returns false to stop.
-    pub fn run(&self, stage: Stage, on_frame: &dyn Fn() -> bool) -> Result<Outcome, ComparisonError> {
-        let lit = self.lit_frames(&stage);
-        // What techniques keep of ambient light is nothing that they are compared by.
+    pub fn run(&self, stage: Stage, on_frame: &dyn Fn() -> bool) -> Result<Outcome, CompareError> {
+        let lit = lit_frames(&stage, self.views, self.times);
+        // Only visibility is compared, so techniques need no maps of ambient light.
         let stage = stage.with_ambient(AmbientModel::Hemisphere);
         let shots: Vec<Shot> = self.views.iter().map(|view| Shot::new(&stage, *view)).collect();
-        let takes: Vec<Take> = self
-            .places()
-            .map(|(camera, time)| Take {
-                shot: &shots[camera],
-                moment: Moment::new(stage.path.as_ref(), self.times[time]),
-            })
-            .collect();
-        // Which surface a pixel shows is found once, and is no part of what tracing takes.
+        let frame = |(camera, time): (usize, usize)| FrameRequest {
+            shot: &shots[camera],
+            moment: Moment::new(stage.path.as_ref(), self.times[time]),
+        };
+        let frames: Vec<FrameRequest> = frame_indices(self.views.len(), self.times.len()).map(frame).collect();
+        // Which surface a pixel shows is found here, once, so that it is no part of tracing's time.
         for shot in &shots {
             shot.hits();
         }
         let mut reader = SetReader { sets: self.sets, current: None };
-        let reference = self.draw(self.against, &stage, &mut reader, &takes, on_frame);
-        let reference = reference.map_err(|absent| self.no_reference(absent))?;
-        let hard = self.hard_truths(&takes)?;
-        let lumas: Vec<Raster<u8>> =
-            lit.iter().zip(&reference.seen).map(|(frame, seen)| luma(&lit_by(frame, seen))).collect();
-        let entry = self.reference_entry(&takes, &reference)?;
-        let mut outcome = Outcome {
-            frames: lit
-                .into_iter()
-                .zip(reference.seen)
-                .map(|(frame, seen)| LitFrame { reference: seen, ..frame })
-                .collect(),
-            techniques: Vec::new(),
-            seen: Vec::new(),
-            left_out: Vec::new(),
-            reference: entry,
-        };
+        let reference = self.draw(self.against, &stage, &mut reader, &frames, on_frame);
+        let reference = reference.map_err(|reason| self.no_reference(reason))?;
+        let hard_truths = self.hard_truths(&frames)?;
+        let entry = self.reference_entry(&frames, &reference)?;
+        let with_reference = |(frame, reference)| LitFrame { reference, ..frame };
+        let lit: Vec<LitFrame> = lit.into_iter().zip(reference.visibility).map(with_reference).collect();
+        let lumas: Vec<Raster<u8>> = lit.iter().map(|frame| luma(&lit_picture_of(frame, &frame.reference))).collect();
+        let mut outcome =
+            Outcome { frames: lit, techniques: vec![], visibility: vec![], left_out: vec![], reference: entry };
         for &technique in self.techniques {
-            match self.draw(technique, &stage, &mut reader, &takes, on_frame) {
+            match self.draw(technique, &stage, &mut reader, &frames, on_frame) {
                 Ok(drawn) => {
-                    let entry = self.judged(technique, &drawn, &outcome.frames, &lumas, hard.as_deref(), &takes);
+                    let entry =
+                        self.scored(technique, &drawn, &outcome.frames, &lumas, hard_truths.as_deref(), &frames);
                     outcome.techniques.push(entry);
-                    outcome.seen.push(drawn.seen.iter().map(codes).collect());
+                    outcome.visibility.push(drawn.visibility.iter().map(visibility_codes).collect());
                 }
-                Err(Absent::Cancelled) => return Err(ComparisonError::Cancelled),
-                Err(Absent::Stage(error)) => return Err(error.into()),
-                Err(Absent::Gpu(error)) => outcome.left_out.push(left_out(technique, error.to_string())),
-                Err(Absent::Other(reason)) => outcome.left_out.push(left_out(technique, reason)),
+                Err(NotDrawn::Cancelled) => return Err(CompareError::Cancelled),
+                Err(NotDrawn::Stage(error)) => return Err(error.into()),
+                Err(NotDrawn::Gpu(error)) => outcome.left_out.push(left_out(technique, error.to_string())),
+                Err(NotDrawn::Unsupported(reason)) => outcome.left_out.push(left_out(technique, reason)),
             }
         }
         Ok(outcome)
     }
 
-    /// Cameras in turn at each time.
-    fn places(&self) -> impl Iterator<Item = (usize, usize)> {
-        let cameras = self.views.len();
-        (0..self.times.len()).flat_map(move |time| (0..cameras).map(move |camera| (camera, time)))
-    }
-
-    fn lit_frames(&self, stage: &Stage) -> Vec<LitFrame> {
-        let shots: Vec<Shot> = self.views.iter().map(|view| Shot::new(stage, *view)).collect();
-        let frame = |(camera, time): (usize, usize)| {
-            let shot = &shots[camera];
-            let moment = Moment::new(stage.path.as_ref(), self.times[time]);
-            let [dark, open] = [0.0, 1.0].map(|seen| {
-                let seen = Raster::filled(shot.view.size, seen);
-                lit_picture(shot, &moment, &seen, None)
-            });
-            LitFrame { camera, time, dark, open, reference: Raster { size: [0, 0], pixels: Vec::new() } }
-        };
-        self.places().map(frame).collect()
-    }
-
-    /// Truths of the sun's centre, if somebody takes the sun for a point and is held against its disc.
-    fn hard_truths(&self, takes: &[Take]) -> Result<Option<Vec<Raster<f32>>>, ComparisonError> {
+    /// Truths of the sun's centre. None unless some technique takes the sun for a point and the reference is soft truth.
+    fn hard_truths(&self, frames: &[FrameRequest]) -> Result<Option<Vec<Raster<f32>>>, CompareError> {
         let is_wanted = matches!(self.against, TechniqueSpec::Truth(Truth::Soft { .. }))
             && self.techniques.iter().any(TechniqueSpec::is_hard);
-        let truth = |take: &Take| Truth::Hard.visibility(take.shot, &take.moment);
-        let all = || takes.iter().map(truth).collect::<Result<Vec<_>, _>>();
-        is_wanted.then(all).transpose().map_err(|error| self.no_reference(Absent::Gpu(error)))
+        let truth = |frame: &FrameRequest| Truth::Hard.visibility(frame.shot, &frame.moment);
+        let all = || frames.iter().map(truth).collect::<Result<Vec<_>, _>>();
+        is_wanted.then(all).transpose().map_err(|error| self.no_reference(NotDrawn::Gpu(error)))
     }
 
-    fn no_reference(&self, absent: Absent) -> ComparisonError {
+    fn no_reference(&self, reason: NotDrawn) -> CompareError {
         let name = self.against.to_string();
-        match absent {
-            Absent::Cancelled => ComparisonError::Cancelled,
-            Absent::Stage(error) => error.into(),
-            Absent::Gpu(error) => ComparisonError::Reference { name, reason: error.to_string() },
-            Absent::Other(reason) => ComparisonError::Reference { name, reason },
+        match reason {
+            NotDrawn::Cancelled => CompareError::Cancelled,
+            NotDrawn::Stage(error) => error.into(),
+            NotDrawn::Gpu(error) => CompareError::Reference { name, reason: error.to_string() },
+            NotDrawn::Unsupported(reason) => CompareError::Reference { name, reason },
         }
     }
 
-    fn reference_entry(&self, takes: &[Take], drawn: &Drawn) -> Result<ReferenceEntry, ComparisonError> {
+    fn reference_entry(&self, frames: &[FrameRequest], drawn: &DrawnFrames) -> Result<ReferenceEntry, CompareError> {
         let noise = match self.against {
-            TechniqueSpec::Truth(Truth::Soft { rays }) => {
-                let in_penumbra =
-                    |seen: &Raster<f32>| seen.pixels.iter().filter(|&&seen| seen > 0.0 && seen < 1.0).count();
-                let most = (0..takes.len()).max_by_key(|&i| in_penumbra(&drawn.seen[i]));
-                most.map(|i| {
-                    let finer = Truth::Soft { rays: 4 * rays }.visibility(takes[i].shot, &takes[i].moment);
-                    finer.map(|finer| {
-                        let hits = takes[i].shot.hits();
-                        let mut tally = Tally::default();
-                        tally.add(&drawn.seen[i], &finer, |pixel| hits[pixel].is_some());
-                        tally.score().mean
-                    })
-                })
-                .transpose()
-                .map_err(|error| self.no_reference(Absent::Gpu(error)))?
-            }
+            TechniqueSpec::Truth(Truth::Soft { rays }) => self.noise(rays, frames, drawn)?,
             _ => None,
         };
         Ok(ReferenceEntry { name: self.against.to_string(), frame_ms: mean_times(&drawn.times).frame_ms, noise })
     }
 
-    /// Builds a technique, draws every frame and drops it again.
-    fn draw(
-        &self,
-        technique: TechniqueSpec,
-        stage: &Stage,
-        reader: &mut SetReader,
-        takes: &[Take],
-        on_frame: &dyn Fn() -> bool,
-    ) -> Result<Drawn, Absent> {
-        let start = Instant::now();
-        match (technique, self.gpu) {
-            (TechniqueSpec::Truth(truth), _) => self.draw_with(&mut { truth }, 0, start, takes, on_frame),
-            (TechniqueSpec::Baked(playback), gpu) => {
-                let played = reader.stage(playback)?;
-                let start = Instant::now();
-                let mut technique: Box<dyn Technique> = match gpu {
-                    Some(gpu) => Box::new(BakedGpu::new(gpu, played, playback.filter)?.timed()),
-                    None => Box::new(BakedCpu::new(played, playback.filter)),
-                };
-                self.draw_with(technique.as_mut(), self.rounds, start, takes, on_frame)
-            }
-            (TechniqueSpec::Volumes(_) | TechniqueSpec::Map(_), None) => {
-                Err(Absent::Other("needs a GPU adapter, and there is none here".into()))
-            }
-            (TechniqueSpec::Volumes(mode), Some(gpu)) => {
-                let savings = Savings { cache: false, ..Savings::default() };
-                let settings = VolumeSettings { mode, savings, is_timed: true, ..VolumeSettings::default() };
-                self.draw_with(&mut Volumes::new(gpu, stage, settings)?, self.rounds, start, takes, on_frame)
-            }
-            (TechniqueSpec::Map(variant), Some(gpu)) => {
-                let mut technique = ShadowMaps::new(gpu, stage, self.map_settings(variant))?;
-                self.draw_with(&mut technique, self.rounds, start, takes, on_frame)
-            }
-        }
-    }
-
-    /// How a variant of shadow maps is drawn.
-    fn map_settings(&self, variant: Variant) -> MapSettings {
-        let settings = MapSettings::new(variant);
-        let means = Means { cache: false, ..Means::default() };
-        let size_texels = self.map_size_texels.unwrap_or(settings.size_texels);
-        MapSettings { means, is_timed: true, size_texels, ..settings }
-    }
-
-    /// Without rounds, what is drawn to warm up is all that there is.
-    fn draw_with(
-        &self,
-        technique: &mut dyn Technique,
-        rounds: u32,
-        start: Instant,
-        takes: &[Take],
-        on_frame: &dyn Fn() -> bool,
-    ) -> Result<Drawn, Absent> {
-        let mut drawn = Drawn { seen: Vec::new(), times: Vec::new(), setup_s: 0.0, memory_bytes: 0, plan: Vec::new() };
-        for take in takes {
-            let (seen, times) = timed_frame(technique, take)?;
-            if drawn.seen.is_empty() && rounds > 0 {
-                drawn.setup_s = start.elapsed().as_secs_f64() - times.frame_ms * 1e-3;
-            }
-            drawn.seen.push(seen);
-            drawn.times.push(times);
-            go_on(on_frame)?;
-        }
-        for round in 0..rounds {
-            for (take, least) in takes.iter().zip(&mut drawn.times) {
-                let times = timed_frame(technique, take)?.1;
-                if round == 0 || times.frame_ms < least.frame_ms {
-                    *least = times;
-                }
-                go_on(on_frame)?;
-            }
-        }
-        Ok(Drawn { memory_bytes: technique.bytes(), plan: technique.plan(), ..drawn })
+    /// The mean error of soft truth against four times as many rays, in the frame with most penumbra. None without frames.
+    fn noise(&self, rays: u32, frames: &[FrameRequest], drawn: &DrawnFrames) -> Result<Option<f64>, CompareError> {
+        let penumbra = |seen: &Raster<f32>| seen.pixels.iter().filter(|&&seen| seen > 0.0 && seen < 1.0).count();
+        let Some(softest) = (0..frames.len()).max_by_key(|&i| penumbra(&drawn.visibility[i])) else {
+            return Ok(None);
+        };
+        let FrameRequest { shot, moment } = &frames[softest];
+        let finer = Truth::Soft { rays: 4 * rays }.visibility(shot, moment);
+        let finer = finer.map_err(|error| self.no_reference(NotDrawn::Gpu(error)))?;
+        let mut tally = Tally::default();
+        tally.add(&drawn.visibility[softest], &finer, |pixel| shot.hits()[pixel].is_some());
+        Ok(Some(tally.score().mean))
     }
 }
 
-fn go_on(on_frame: &dyn Fn() -> bool) -> Result<(), Absent> {
-    if on_frame() { Ok(()) } else { Err(Absent::Cancelled) }
+/// Indices of camera and time of each frame: all cameras at the first time, then at the next.
+fn frame_indices(camera_count: usize, time_count: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..time_count).flat_map(move |time| (0..camera_count).map(move |camera| (camera, time)))
 }
 
 fn left_out(technique: TechniqueSpec, reason: String) -> LeftOut {
     LeftOut { name: technique.to_string(), reason }
-}
-
-/// A frame's light, given how much of the sun each pixel sees. What is no number is shown as sun.
-pub fn lit_by(frame: &LitFrame, seen: &Raster<f32>) -> Raster<Vec3> {
-    let pixels = frame.dark.pixels.iter().zip(&frame.open.pixels).zip(&seen.pixels);
-    let light =
-        |((dark, open), &seen): ((&Vec3, &Vec3), &f32)| dark.lerp(*open, if seen.is_nan() { 1.0 } else { seen });
-    Raster { size: frame.dark.size, pixels: pixels.map(light).collect() }
-}
-
-/// Visibility in 256 steps.
-pub fn codes(seen: &Raster<f32>) -> Raster<u8> {
-    let code = |&seen: &f32| (seen.clamp(0.0, 1.0) * 255.0).round() as u8;
-    Raster { size: seen.size, pixels: seen.pixels.iter().map(code).collect() }
 }

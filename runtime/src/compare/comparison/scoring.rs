@@ -1,46 +1,50 @@
-//! A technique's pictures, held against the reference's.
+//! The errors of a technique's pictures, and what the report says of it.
 
 use super::super::report::{FrameEntry, Preparation, TechniqueEntry};
 use super::super::score::{Tally, luma, structural_similarity};
 use super::super::technique::TechniqueSpec;
-use super::sets::set_for;
+use super::drawing::DrawnFrames;
+use super::set_reader::set_for;
 use super::times::mean_times;
-use super::{Comparison, Drawn, LitFrame, SetOnDisk, Take, lit_by};
+use super::{Comparison, FrameRequest, LitFrame, SetOnDisk, lit_picture_of};
 use crate::image::Raster;
 use rayon::prelude::*;
 
 impl Comparison<'_> {
-    /// What a report says of it. `lumas` are the reference's lit pictures, `hard` truths of the sun's centre.
-    pub(super) fn judged(
+    /// What a report says of a technique. `lumas` are the reference's lit pictures, `hard_truths` truths of the sun's centre.
+    pub(super) fn scored(
         &self,
         technique: TechniqueSpec,
-        drawn: &Drawn,
-        frames: &[LitFrame],
+        drawn: &DrawnFrames,
+        lit: &[LitFrame],
         lumas: &[Raster<u8>],
-        hard: Option<&[Raster<f32>]>,
-        takes: &[Take],
+        hard_truths: Option<&[Raster<f32>]>,
+        frames: &[FrameRequest],
     ) -> TechniqueEntry {
         let tally = |i: usize| {
-            let hits = takes[i].shot.hits();
+            let hits = frames[i].shot.hits();
             let mut tally = Tally::default();
-            tally.add(&drawn.seen[i], &frames[i].reference, |pixel| hits[pixel].is_some());
-            tally.add_likeness(structural_similarity(&luma(&lit_by(&frames[i], &drawn.seen[i])), &lumas[i]));
+            tally.add(&drawn.visibility[i], &lit[i].reference, |pixel| hits[pixel].is_some());
+            tally.add_similarity(structural_similarity(
+                &luma(&lit_picture_of(&lit[i], &drawn.visibility[i])),
+                &lumas[i],
+            ));
             tally
         };
         let tallies: Vec<Tally> = (0..frames.len()).into_par_iter().map(tally).collect();
         let mut all = Tally::default();
         tallies.iter().for_each(|tally| all.append(tally));
-        let frame = |i: usize| FrameEntry {
-            camera: frames[i].camera as u64,
-            time: frames[i].time as u64,
+        let frame_entry = |i: usize| FrameEntry {
+            camera: lit[i].camera as u64,
+            time: lit[i].time as u64,
             error: tallies[i].score(),
             frame_ms: drawn.times[i].frame_ms,
         };
-        let hard_error = hard.filter(|_| technique.is_hard()).map(|hard| {
+        let hard_error = hard_truths.filter(|_| technique.is_hard()).map(|truths| {
             let mut tally = Tally::default();
-            for ((seen, hard), take) in drawn.seen.iter().zip(hard).zip(takes) {
-                let hits = take.shot.hits();
-                tally.add(seen, hard, |pixel| hits[pixel].is_some());
+            for ((seen, truth), frame) in drawn.visibility.iter().zip(truths).zip(frames) {
+                let hits = frame.shot.hits();
+                tally.add(seen, truth, |pixel| hits[pixel].is_some());
             }
             tally.score()
         });
@@ -62,7 +66,7 @@ impl Comparison<'_> {
             memory_bytes: drawn.memory_bytes,
             disk_bytes: set.filter(has_its_bits).map(|set| set.entry.disk_bytes),
             plan: drawn.plan.clone(),
-            frames: (0..frames.len()).map(frame).collect(),
+            frames: (0..frames.len()).map(frame_entry).collect(),
         }
     }
 }

@@ -1,16 +1,19 @@
-//! What a frame takes.
+//! How long a frame takes.
 
 use super::super::report::{Passes, Times};
-use super::Take;
+use super::FrameRequest;
 use crate::gpu::{FrameTimes, GpuError};
 use crate::image::Raster;
 use crate::technique::Technique;
 use std::time::Instant;
 
-/// Draws a frame, and tells what it took.
-pub(super) fn timed_frame(technique: &mut dyn Technique, take: &Take) -> Result<(Raster<f32>, Times), GpuError> {
+/// Draws a frame, and says how long that took.
+pub(super) fn timed_frame(
+    technique: &mut dyn Technique,
+    frame: &FrameRequest,
+) -> Result<(Raster<f32>, Times), GpuError> {
     let start = Instant::now();
-    let seen = technique.visibility(take.shot, &take.moment)?;
+    let seen = technique.visibility(frame.shot, &frame.moment)?;
     let wall_ms = start.elapsed().as_secs_f64() * 1e3;
     let cost = technique.cost();
     let passes = cost.passes.map(passes_of);

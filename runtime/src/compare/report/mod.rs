@@ -1,4 +1,4 @@
-//! What a comparison found, as it is written down: `report.json`, whose schema is `runtime/schemas/compare.schema.json`.
+//! The report of a comparison: `report.json`, whose schema is `runtime/schemas/compare.schema.json`, and a page of HTML.
 //!
 //! Every error stands beside the time and the bytes that it cost, and every time beside its error.
 
@@ -7,7 +7,7 @@ mod pictures;
 mod tables;
 mod wording;
 
-pub use page::page;
+pub use page::{PageError, page};
 pub use pictures::{FramePictures, Pictures};
 
 use super::score::Score;
@@ -17,6 +17,9 @@ use serde::{Deserialize, Serialize};
 pub const FORMAT: &str = "sunbake-compare";
 /// What [`Report::version`] says.
 pub const VERSION: u32 = 1;
+
+/// What [`Report::generator`] says: this crate's command.
+pub const GENERATOR: &str = concat!("sunplay ", env!("CARGO_PKG_VERSION"));
 
 /// The whole of `report.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,25 +35,25 @@ pub struct Report {
     pub scene: SceneEntry,
     /// What drew it.
     pub machine: MachineEntry,
-    /// What every technique is held against.
+    /// What every technique is compared with.
     pub reference: ReferenceEntry,
     /// Width and height of every picture, in pixels.
     pub size: [u32; 2],
-    /// Through which cameras.
+    /// Cameras.
     pub cameras: Vec<CameraEntry>,
-    /// At which times.
+    /// Times of day.
     pub times: Vec<TimeEntry>,
     /// How often each picture was drawn; the least of its times counts.
     pub rounds: u32,
-    /// What was compared.
+    /// Techniques that were compared.
     pub techniques: Vec<TechniqueEntry>,
-    /// What was not, and why.
+    /// Techniques that were not compared, and why.
     pub left_out: Vec<LeftOut>,
     /// Limits that were set with `--fail-above`, and whether they were kept.
     pub limits: Vec<LimitEntry>,
-    /// What makes these numbers worth less than they look.
+    /// Why some of the numbers are worth less than they look.
     pub warnings: Vec<String>,
-    /// How to read them.
+    /// How to read the numbers.
     pub notes: Vec<String>,
 }
 
@@ -60,11 +63,11 @@ pub struct Report {
 pub struct SceneEntry {
     /// Its file's name.
     pub name: String,
-    /// SHA-256 of the file that was baked or drawn, and of what it refers to.
+    /// SHA-256 of the file that was baked or drawn, and of the files that it refers to.
     pub sha256: String,
-    /// Triangles that are drawn or cast.
+    /// Triangles that are drawn or cast shadows.
     pub triangles: u64,
-    /// The sets that were baked of it, or that was given.
+    /// The sets that were baked of it, or the set that was given.
     pub sets: Vec<SetEntry>,
 }
 
@@ -76,19 +79,19 @@ pub struct SetEntry {
     pub lanes: u64,
     /// Bits of a stored time.
     pub bits: u32,
-    /// Texels that stand for a point of a surface.
+    /// Texels that hold a surface point.
     pub texels: u64,
-    /// Their density.
+    /// Density of texels on surfaces.
     pub texels_per_metre: f64,
-    /// Seconds to bake it, without ambient light, on the machine that did.
+    /// Seconds to bake it, without ambient light, on the machine that baked it.
     pub bake_s: f64,
     /// Bytes of its files, without those of the scene and of ambient light.
     pub disk_bytes: u64,
-    /// Engine that found its times.
+    /// Engine that computed its times.
     pub engine: String,
 }
 
-/// What drew.
+/// The machine that drew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct MachineEntry {
@@ -100,22 +103,22 @@ pub struct MachineEntry {
     pub threads: u64,
     /// Operating system and architecture.
     pub os: String,
-    /// The GPU adapter; null where there was none and the CPU drew.
+    /// Name of the GPU adapter; null where the CPU drew.
     pub adapter: Option<String>,
-    /// Whether that adapter is a CPU that plays a GPU: its times are the CPU's, and tell nothing of a GPU's.
+    /// Whether that adapter is a software GPU (llvmpipe): its times are the CPU's, and say nothing of a GPU's.
     pub is_software: bool,
 }
 
-/// What techniques are held against.
+/// What every technique is compared with.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReferenceEntry {
     /// Its name.
     pub name: String,
-    /// Milliseconds a frame took, once it was known which surface each pixel shows.
+    /// Milliseconds per frame, without finding which surface each pixel shows.
     pub frame_ms: f64,
-    /// How far it is from truth of four times as many rays, in the mean over the frame with most penumbra: an error of this size is
-    /// noise. Null where the reference has none.
+    /// Its mean error against truth with four times as many rays, in the frame with most penumbra: errors of this size are noise.
+    /// Null where the reference has no noise.
     pub noise: Option<f64>,
 }
 
@@ -129,23 +132,23 @@ pub struct CameraEntry {
     pub eye_m: [f64; 3],
     /// Unit vector along which it looks.
     pub forward: [f64; 3],
-    /// Vertical field of view.
+    /// Vertical field of view, in degrees.
     pub fov_deg: f64,
 }
 
-/// A time.
+/// A time of day.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TimeEntry {
-    /// On the sun's path, 0 to 1.
+    /// Place on the sun's path, 0 to 1.
     pub t: f64,
-    /// By local clocks or, where there are none, the same as text.
+    /// Local clock time or, where there is no clock, `t` as text.
     pub clock: String,
-    /// Degrees that the sun stands above the horizon.
+    /// The sun's angle above the horizon, in degrees.
     pub elevation_deg: f64,
 }
 
-/// A technique, with what it cost and how far it was off.
+/// A technique, with its cost and its error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct TechniqueEntry {
@@ -153,54 +156,54 @@ pub struct TechniqueEntry {
     pub name: String,
     /// `baked`, `volumes`, `map` or `truth`.
     pub family: String,
-    /// Whether it takes the sun for a point.
+    /// Whether it takes the sun for a point, and so draws no penumbra.
     pub is_hard: bool,
-    /// How far it is from the reference, over all frames.
+    /// Its error against the reference, over all frames.
     pub error: Score,
-    /// Of one that takes the sun for a point: how far it is from truth of the sun's centre. Null for others, and where the
-    /// reference is no soft truth.
+    /// Error against truth of the sun's centre, for a technique that takes the sun for a point. Null for others, and where the
+    /// reference is not soft truth.
     pub hard_error: Option<Score>,
-    /// What a frame took, in the mean.
+    /// Mean times of a frame.
     pub times: Times,
-    /// What it took before the first frame.
+    /// What it needed before the first frame.
     pub preparation: Preparation,
-    /// Bytes it keeps from frame to frame, beyond the scene itself.
+    /// Bytes of memory kept from frame to frame, beyond the scene itself.
     pub memory_bytes: u64,
-    /// Bytes on disk, without the scene; null where nothing is stored, or what is stored was not written.
+    /// Bytes on disk, without the scene; null where nothing is stored, or was not written to disk.
     pub disk_bytes: Option<u64>,
-    /// What it decided for the last frame, in words.
+    /// What it decided for the last frame, as sentences.
     pub plan: Vec<String>,
-    /// Frame by frame, cameras in turn at each time.
+    /// Frames: all cameras at the first time, then at the next.
     pub frames: Vec<FrameEntry>,
 }
 
-/// What a frame takes while the sun moves: nothing is kept from frame to frame.
+/// Times of a frame under a moving sun: nothing is kept from frame to frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Times {
-    /// Milliseconds a frame: its passes and what the CPU finds for them or, where passes are not timed, from call to picture.
+    /// Milliseconds per frame: its passes and the CPU's work for them or, where passes are not timed, from call to picture.
     pub frame_ms: f64,
     /// Milliseconds of the passes by the adapter's clock; null where they are not timed.
     pub passes: Option<Passes>,
-    /// Milliseconds on the CPU to find what passes draw.
+    /// Milliseconds on the CPU to find what the passes draw.
     pub cpu_ms: f64,
-    /// Milliseconds from call to picture, with reading it back.
+    /// Milliseconds from call to picture, including reading it back.
     pub wall_ms: f64,
 }
 
-/// Milliseconds of passes.
+/// Milliseconds of a frame's passes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Passes {
-    /// Depths.
+    /// The camera's depth pass.
     pub depth_ms: f64,
-    /// Shadow volumes.
+    /// Shadow volumes in the stencil buffer.
     pub volumes_ms: f64,
-    /// Shadow maps.
+    /// Drawing shadow maps.
     pub maps_ms: f64,
-    /// Light.
+    /// Finding visibility at each pixel.
     pub light_ms: f64,
-    /// From the start of the first to the end of the last.
+    /// From the start of the first pass to the end of the last.
     pub all_ms: f64,
 }
 
@@ -208,10 +211,10 @@ pub struct Passes {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Preparation {
-    /// Seconds to bake, with all stages but ambient light; null where nothing is baked, and for a lane cut out of a set of several.
-    /// Of eight bits made of sixteen it is the set's, since rounding takes no time to speak of.
+    /// Seconds to bake, with all stages but ambient light; null where nothing is baked, and for one lane of a set with several. For
+    /// eight bits made of sixteen it is the set's, since rounding takes next to no time.
     pub bake_s: Option<f64>,
-    /// Seconds to upload the scene and build what draws it.
+    /// Seconds to upload the scene and build pipelines.
     pub setup_s: f64,
 }
 
@@ -223,13 +226,13 @@ pub struct FrameEntry {
     pub camera: u64,
     /// Index in `times`.
     pub time: u64,
-    /// How far it is from the reference.
+    /// Its error against the reference.
     pub error: Score,
-    /// Milliseconds that it took, as in [`Times`].
+    /// Milliseconds of this frame, as in `times`.
     pub frame_ms: f64,
 }
 
-/// What was not compared.
+/// A technique that was not compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LeftOut {
@@ -239,17 +242,17 @@ pub struct LeftOut {
     pub reason: String,
 }
 
-/// A limit of `--fail-above`.
+/// A limit, and whether it was kept.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LimitEntry {
     /// What is limited.
     pub key: String,
-    /// The most that is allowed.
+    /// The largest value allowed.
     pub limit: f64,
-    /// Techniques that are above it, with what they have.
+    /// Techniques above the limit, with their values.
     pub above: Vec<AboveLimit>,
-    /// Techniques of which that cannot be told: left out, or without a pixel to tell by.
+    /// Techniques that could not be checked: left out, or without a compared pixel.
     pub unchecked: Vec<String>,
 }
 
@@ -259,7 +262,7 @@ pub struct LimitEntry {
 pub struct AboveLimit {
     /// Its name.
     pub name: String,
-    /// What it has.
+    /// Its value.
     pub value: f64,
 }
 

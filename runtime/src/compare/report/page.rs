@@ -1,20 +1,32 @@
-//! A report as one page that needs no network: pictures to slide between, tables to sort, plots.
+//! The report as one page of HTML that needs no network: a viewer of pictures, tables that sort, plots.
 
 use super::tables::{left_out, passes, results, sets};
 use super::{Pictures, Report, TechniqueEntry};
+use image::ImageError;
 use serde::Serialize;
 use sunbake::report::plot::{Axis, Plot, Point, Series, scatter};
 use sunbake::report::{escape, plain, with_unit};
 
-/// The controls, and the place of the pictures.
+/// The viewer's controls, and the element that shows its pictures.
 const VIEWER: &str = include_str!("viewer.html");
-/// How they look.
+/// Its style.
 const STYLE: &str = include_str!("viewer.css");
-/// What they do; one module in three files.
+/// Its script, one module in three files.
 const SCRIPTS: [&str; 3] = [include_str!("pixels.js"), include_str!("viewer.js"), include_str!("controls.js")];
 /// Families in the order of plots, with their names there.
 const FAMILIES: [(&str, &str); 4] =
     [("baked", "baked"), ("volumes", "shadow volumes"), ("map", "shadow maps"), ("truth", "rays")];
+
+/// Why there is no page.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// A picture cannot be encoded.
+    #[error(transparent)]
+    Picture(#[from] ImageError),
+    /// Numbers cannot be written as JSON.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+}
 
 /// The page of a report.
 pub fn page(report: &Report, pictures: &Pictures) -> Result<String, serde_json::Error> {
@@ -88,25 +100,24 @@ fn plots(report: &Report) -> String {
     let clock = match (&report.machine.adapter, report.machine.is_software) {
         (None, _) => "milliseconds a frame, CPU",
         (Some(_), true) => "milliseconds a frame, software adapter",
-        (Some(_), false) => "milliseconds a frame, GPU and what the CPU finds for it",
+        (Some(_), false) => "milliseconds a frame, GPU and the CPU's work for it",
     };
     format!(
         "<h2>Error against time and bytes</h2>\n<p>The nearer to the lower left corner, the better.</p>\n\
-         <div class=\"side-by-side\">\n<figure>{}<figcaption>What a frame takes, and what that buys. A bake is paid before. Rays are left out: their time is the CPU's, and without finding the surfaces.</figcaption></figure>\n\
-         <figure>{}<figcaption>What is kept from frame to frame: maps of a bake, shadow maps, what volumes are drawn \
-         from.</figcaption></figure>\n</div>\n",
+         <div class=\"side-by-side\">\n<figure>{}<figcaption>Time per frame, and the error that is left. Time to bake is not included. Rays are left out: theirs is the CPU's time, without finding the surfaces.</figcaption></figure>\n\
+         <figure>{}<figcaption>Memory kept from frame to frame: baked maps, shadow maps, the buffers of shadow volumes.</figcaption></figure>\n</div>\n",
         plot("Error and time", clock, &FAMILIES[..3], &|technique| technique.times.frame_ms),
         plot("Error and bytes", "MiB of memory", &FAMILIES, &|technique| technique.memory_bytes as f64
             / f64::from(1 << 20)),
     )
 }
 
-/// A name in a plot: without the family, which the colour tells, unless that is all there is.
+/// A name in a plot: without the family, which the colour shows, unless the name is nothing else.
 fn short(name: &str) -> String {
     name.split_once(':').map_or(name, |(_, rest)| rest).replace("lanes", "").replace(":filtered", "")
 }
 
-/// What techniques decided for their last frames, for those that had to.
+/// What techniques decided for their last frames.
 fn decisions(report: &Report) -> String {
     let decided = report.techniques.iter().filter(|technique| !technique.plan.is_empty());
     let entry = |technique: &TechniqueEntry| {
@@ -117,7 +128,9 @@ fn decisions(report: &Report) -> String {
     if entries.is_empty() {
         return entries;
     }
-    format!("<details><summary>What each decided for its last frame</summary>\n<dl>\n{entries}</dl></details>\n")
+    format!(
+        "<details><summary>What each technique decided for its last frame</summary>\n<dl>\n{entries}</dl></details>\n"
+    )
 }
 
 fn facts(report: &Report) -> String {
@@ -127,7 +140,7 @@ fn facts(report: &Report) -> String {
     let cameras: Vec<&str> = report.cameras.iter().map(|camera| camera.name.as_str()).collect();
     let noise = report.reference.noise.map_or(String::new(), |noise| {
         format!(
-            "; its own noise, against four times as many rays, is {} in the mean of its softest frame",
+            "; its own noise, against four times as many rays, has a mean of {} in its softest frame",
             plain(noise, 2)
         )
     });

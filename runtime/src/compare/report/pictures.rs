@@ -1,10 +1,10 @@
-//! The pictures of a report, small enough to lie in its page.
+//! The pictures of a report, small enough to be part of its page.
 //!
-//! A page that held a picture for each technique, camera and time would be hundreds of megabytes. All techniques shade alike, and
-//! light is linear in what is seen of the sun: so a frame needs two colour pictures, with the sun wholly hidden and wholly seen, and
-//! a grey one a technique. The browser puts them together.
+//! A page with a colour picture for each technique, camera and time would have hundreds of megabytes. All techniques shade alike, and
+//! light is linear in the visibility of the sun. So a frame needs two colour pictures, with the sun hidden and with the sun seen
+//! everywhere, and a grey one for each technique. The browser puts them together.
 
-use super::super::comparison::{Outcome, codes};
+use super::super::comparison::{LitFrame, Outcome, visibility_codes};
 use crate::image::Raster;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -25,7 +25,7 @@ const BRIGHTEST: f32 = 16.0;
 pub struct Pictures {
     /// Width and height of each, in pixels.
     pub size: [u32; 2],
-    /// Cameras in turn at each time.
+    /// All cameras at the first time, then at the next.
     pub frames: Vec<FramePictures>,
 }
 
@@ -38,31 +38,32 @@ pub struct FramePictures {
     pub time: usize,
     /// Linear light of a code q of `dark` and `open` is `scale (q / 255)^2`.
     pub scale: f32,
-    /// The sun wholly hidden: JPEG.
+    /// The scene with the sun hidden: JPEG.
     pub dark: String,
-    /// The sun wholly seen: JPEG.
+    /// The scene with the sun seen everywhere: JPEG.
     pub open: String,
-    /// What the reference sees of it: grey PNG.
+    /// Visibility of the sun by the reference: grey PNG.
     pub reference: String,
-    /// What each technique sees of it.
+    /// Visibility of the sun by each technique: grey PNG.
     pub seen: Vec<String>,
 }
 
 impl Pictures {
-    /// Those of an outcome.
+    /// Encodes the pictures of a comparison.
     pub fn new(outcome: &Outcome) -> Result<Self, ImageError> {
-        let size = outcome.frames.first().map_or([0, 0], |frame| frame.dark.size);
-        let frame = |(i, frame): (usize, &super::super::LitFrame)| {
-            let brightest = frame.open.pixels.iter().chain(&frame.dark.pixels).map(|light| light.max_element());
+        let size = outcome.frames.first().map_or([0, 0], |frame| frame.without_sun.size);
+        let frame = |(i, frame): (usize, &LitFrame)| {
+            let brightest =
+                frame.full_sun.pixels.iter().chain(&frame.without_sun.pixels).map(|light| light.max_element());
             let scale = brightest.filter(|light| light.is_finite()).fold(1e-3, f32::max).min(BRIGHTEST);
             Ok(FramePictures {
                 camera: frame.camera,
                 time: frame.time,
                 scale,
-                dark: color(&frame.dark, scale)?,
-                open: color(&frame.open, scale)?,
-                reference: grey(&codes(&frame.reference))?,
-                seen: outcome.seen.iter().map(|seen| grey(&seen[i])).collect::<Result<_, ImageError>>()?,
+                dark: color(&frame.without_sun, scale)?,
+                open: color(&frame.full_sun, scale)?,
+                reference: grey(&visibility_codes(&frame.reference))?,
+                seen: outcome.visibility.iter().map(|seen| grey(&seen[i])).collect::<Result<_, ImageError>>()?,
             })
         };
         let frames = outcome.frames.par_iter().enumerate().map(frame).collect::<Result<_, ImageError>>()?;
@@ -70,7 +71,7 @@ impl Pictures {
     }
 }
 
-/// Linear light by the square root, which spends codes where the eye sees steps.
+/// Linear light as codes of its square root: finer steps in the dark, where the eye sees them.
 fn color(light: &Raster<Vec3>, scale: f32) -> Result<String, ImageError> {
     let code = |light: f32| ((light / scale).clamp(0.0, 1.0).sqrt() * 255.0).round() as u8;
     let bytes: Vec<u8> = light.pixels.iter().flat_map(|light| light.to_array().map(code)).collect();

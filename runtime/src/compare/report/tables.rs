@@ -3,21 +3,25 @@
 use super::{LeftOut, Passes, Report, SetEntry, TechniqueEntry};
 use sunbake::report::{Cell, Column, Row, Table, escape, plain, with_unit};
 
-/// What each costs, and how far it is off.
+/// Errors and costs of each technique.
 pub(super) fn results(report: &Report) -> String {
     let columns = vec![
-        Column::words("technique", "A click puts it on the left of the picture"),
+        Column::words("technique", "A click shows it on the left of the picture"),
         Column::numbers("mean", "error", "Mean error of visibility, 0 to 1, over pixels that show a surface"),
-        Column::numbers("99 %", "error", "99 in 100 pixels are off by no more"),
-        Column::numbers("wrong", "% of pixels", "Off by more than a half: sun for shade, or shade for sun"),
+        Column::numbers("99 %", "error", "99 in 100 pixels have a smaller error"),
+        Column::numbers("wrong", "% of pixels", "Error above a half: sun for shade, or shade for sun"),
         Column::numbers("penumbra", "mean", "Mean error where the reference sees a part of the sun"),
         Column::numbers("outside", "mean", "Mean error everywhere else"),
-        Column::numbers("likeness", "SSIM", "Structural similarity of the lit pictures, 1 for equal ones"),
-        Column::numbers("centre", "% wrong", "Of what takes the sun for a point: held against truth of its centre"),
+        Column::numbers("similarity", "SSIM", "Structural similarity of the lit pictures, 1 for equal ones"),
+        Column::numbers(
+            "centre",
+            "% wrong",
+            "For techniques that take the sun for a point: against truth of its centre",
+        ),
         Column::numbers(
             "frame",
             "ms",
-            "Passes by the adapter's clock, and what the CPU finds for them; the least of the rounds, in the mean",
+            "Passes by the adapter's clock, and the CPU's work for them; mean over frames of the least of the rounds",
         ),
         Column::numbers("memory", "MiB", "Kept from frame to frame, beyond the scene"),
         Column::numbers("on disk", "MiB", "Files of times, without the scene; nothing where they were not written"),
@@ -25,7 +29,7 @@ pub(super) fn results(report: &Report) -> String {
     ];
     let table = Table {
         caption: format!(
-            "Held against {}, over {} frames of {} by {} pixels. Headings sort.",
+            "Compared with {}, over {} frames of {} by {} pixels. Click a heading to sort.",
             report.reference.name,
             report.cameras.len() * report.times.len(),
             report.size[0],
@@ -34,7 +38,7 @@ pub(super) fn results(report: &Report) -> String {
         columns,
         rows: report.techniques.iter().enumerate().map(|(i, technique)| result(i, technique)).collect(),
     };
-    format!("<h2>What each costs, and how far it is off</h2>\n{}", table.html())
+    format!("<h2>Error and cost of each technique</h2>\n{}", table.html())
 }
 
 fn result(index: usize, technique: &TechniqueEntry) -> Row {
@@ -67,14 +71,14 @@ fn result(index: usize, technique: &TechniqueEntry) -> Row {
 pub(super) fn passes(report: &Report) -> String {
     let columns = vec![
         Column::words("technique", ""),
-        Column::numbers("depth", "ms", "Depths as the camera sees them"),
-        Column::numbers("volumes", "ms", "Shadow volumes in the stencil"),
-        Column::numbers("maps", "ms", "Shadow maps, and pictures of what casts"),
-        Column::numbers("light", "ms", "What each pixel sees of the sun"),
-        Column::numbers("all passes", "ms", "From the start of the first to the end of the last"),
-        Column::numbers("CPU", "ms", "To find what passes draw: silhouettes, or where maps lie"),
-        Column::numbers("call to picture", "ms", "With reading it back, which a window does not do"),
-        Column::numbers("setting up", "s", "Uploading the scene, and building what draws it"),
+        Column::numbers("depth", "ms", "The camera's depth pass"),
+        Column::numbers("volumes", "ms", "Shadow volumes in the stencil buffer"),
+        Column::numbers("maps", "ms", "Drawing shadow maps, and pictures of casters"),
+        Column::numbers("light", "ms", "Visibility of the sun at each pixel"),
+        Column::numbers("all passes", "ms", "From the start of the first pass to the end of the last"),
+        Column::numbers("CPU", "ms", "To find what the passes draw: silhouettes, or the maps' projections"),
+        Column::numbers("call to picture", "ms", "Includes reading the picture back, which a window does not do"),
+        Column::numbers("setting up", "s", "Uploading the scene, and building pipelines"),
     ];
     let number = |value: f64| Cell::number(&plain(value, 3), value);
     let row = |technique: &TechniqueEntry| {
@@ -95,7 +99,7 @@ pub(super) fn passes(report: &Report) -> String {
         ])
     };
     let table = Table {
-        caption: "Means over all frames; nothing is kept from one to the next.".into(),
+        caption: "Means over all frames; nothing is kept from one frame to the next.".into(),
         columns,
         rows: report.techniques.iter().map(row).collect(),
     };
@@ -110,11 +114,11 @@ pub(super) fn sets(report: &Report) -> String {
     let columns = vec![
         Column::numbers("lanes", "", "Lines across the sun's disc"),
         Column::numbers("bits", "", "Of a stored time"),
-        Column::numbers("texels", "", "That stand for a point of a surface"),
+        Column::numbers("texels", "", "Texels that hold a surface point"),
         Column::numbers("density", "texels/m", ""),
-        Column::words("engine", "What found the times"),
+        Column::words("engine", "What computed the times"),
         Column::numbers("bake", "s", "Without ambient light"),
-        Column::numbers("files", "", "Of times, without the scene"),
+        Column::numbers("files", "", "Files of times, without the scene"),
     ];
     let row = |set: &SetEntry| {
         Row::of(vec![
@@ -131,7 +135,7 @@ pub(super) fn sets(report: &Report) -> String {
     format!("<h2>What was baked</h2>\n{}", table.html())
 }
 
-/// What was left out, and why.
+/// Techniques that were left out, and why.
 pub(super) fn left_out(report: &Report) -> String {
     if report.left_out.is_empty() {
         return String::new();

@@ -1,6 +1,6 @@
-//! A report in words: what is printed, and what stands over its sheet.
+//! The report as text: what the command prints, and the title of the sheet.
 
-use super::super::sheet::Pair;
+use super::super::sheet::BestPair;
 use super::{LimitEntry, Report, TechniqueEntry};
 use sunbake::report::{plain, with_unit};
 
@@ -54,30 +54,28 @@ impl Report {
         text
     }
 
-    /// What came of it, in a few sentences: what the best baked technique and the best live one lose and cost. Best is whose lit
-    /// pictures are most like the reference's.
+    /// The result in a few sentences: error and cost of the best baked technique and of the best live one ([`BestPair`]).
     pub fn findings(&self) -> Vec<String> {
-        let Some(Pair { ours, theirs }) = Pair::best(&self.techniques) else { return Vec::new() };
-        let [ours, theirs] = [ours, theirs].map(|i| &self.techniques[i]);
-        let lost = |one: &TechniqueEntry| {
+        let Some(BestPair { baked, live }) = BestPair::of(&self.techniques) else { return Vec::new() };
+        let [baked, live] = [baked, live].map(|i| &self.techniques[i]);
+        let cost = |one: &TechniqueEntry| {
             format!(
-                "is off by {} of the sun in the mean, with {:.2} % of pixels wrong by more than a half; it takes {} a frame, {} of \
-                 memory",
+                "has a mean error of {}, with {:.2} % of pixels wrong by more than a half; it takes {} a frame and {} of memory",
                 plain(one.error.mean, 2),
                 one.error.wrong_share * 100.0,
                 with_unit(one.times.frame_ms, "ms"),
                 with_unit(one.memory_bytes as f64, "bytes"),
             )
         };
-        let bake = ours.preparation.bake_s.map_or("an unknown time".into(), |seconds| with_unit(seconds, "s"));
+        let bake = baked.preparation.bake_s.map_or("an unknown time".into(), |seconds| with_unit(seconds, "s"));
         vec![
-            format!("Baked: {}, the most lifelike, {}, and {bake} of baking before.", ours.name, lost(ours)),
-            format!("Live: {}, the most lifelike, {}, and no bake.", theirs.name, lost(theirs)),
+            format!("Best baked technique: {} {}, after {bake} of baking.", baked.name, cost(baked)),
+            format!("Best live technique: {} {}, and no bake.", live.name, cost(live)),
             format!(
-                "So the live one errs {} as much as the baked one, takes {} its time a frame, and {} its memory.",
-                times(theirs.error.mean, ours.error.mean),
-                times(theirs.times.frame_ms, ours.times.frame_ms),
-                times(theirs.memory_bytes as f64, ours.memory_bytes as f64),
+                "Live against baked: error {}, time a frame {}, memory {}.",
+                ratio(live.error.mean, baked.error.mean),
+                ratio(live.times.frame_ms, baked.times.frame_ms),
+                ratio(live.memory_bytes as f64, baked.memory_bytes as f64),
             ),
         ]
     }
@@ -86,15 +84,15 @@ impl Report {
     pub fn drawn_by(&self) -> String {
         let machine = &self.machine;
         match &machine.adapter {
-            Some(adapter) if machine.is_software => format!("{adapter} (a software adapter)"),
+            Some(adapter) if machine.is_software => format!("{adapter} (a software GPU)"),
             Some(adapter) => adapter.clone(),
             None => format!("the CPU, {}", machine.cpu),
         }
     }
 
-    /// What stands over the sheet of a pair.
-    pub fn title_lines(&self, pair: Pair) -> Vec<String> {
-        let [ours, theirs] = [pair.ours, pair.theirs].map(|i| &self.techniques[i]);
+    /// The title of a pair's sheet.
+    pub fn title_lines(&self, pair: BestPair) -> Vec<String> {
+        let [baked, live] = [pair.baked, pair.live].map(|i| &self.techniques[i]);
         let line = |technique: &TechniqueEntry| {
             let bake =
                 technique.preparation.bake_s.map_or("no bake".into(), |seconds| with_unit(seconds, "s") + " to bake");
@@ -107,12 +105,12 @@ impl Report {
                 with_unit(technique.memory_bytes as f64, "bytes"),
             )
         };
-        vec![format!("{}, against {}", self.scene.name, self.reference.name), line(ours), line(theirs), self.drawn_by()]
+        vec![format!("{}, against {}", self.scene.name, self.reference.name), line(baked), line(live), self.drawn_by()]
     }
 }
 
-/// A ratio in words; of nothing there is none.
-fn times(a: f64, b: f64) -> String {
+/// A ratio as text. Against 0 both numbers are given.
+fn ratio(a: f64, b: f64) -> String {
     if b > 0.0 && a.is_finite() {
         format!("{} times", plain(a / b, 2))
     } else {
@@ -121,21 +119,21 @@ fn times(a: f64, b: f64) -> String {
 }
 
 impl LimitEntry {
-    /// Whether everybody was held to it, and kept it.
+    /// Whether every technique was checked, and none is above the limit.
     pub fn is_kept(&self) -> bool {
         self.above.is_empty() && self.unchecked.is_empty()
     }
 
-    /// Who did not keep it, in words.
+    /// Which techniques are above it, and which could not be checked, as text.
     pub fn text(&self) -> String {
         let above = self.above.iter().map(|above| format!("{} {}", above.name, plain(above.value, 4)));
         let above: Vec<String> = above.collect();
         let limit = plain(self.limit, 4);
-        let told = [
+        let sentences = [
             (!above.is_empty()).then(|| format!("{} is above {limit}: {}", self.key, above.join(", "))),
             (!self.unchecked.is_empty())
                 .then(|| format!("{} could not be checked of {}", self.key, self.unchecked.join(", "))),
         ];
-        told.into_iter().flatten().collect::<Vec<_>>().join("; ")
+        sentences.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 }

@@ -2,7 +2,7 @@
 
 use super::super::report::SetEntry;
 use super::super::technique::Playback;
-use super::Absent;
+use super::drawing::NotDrawn;
 use crate::stage::Stage;
 use std::path::{Path, PathBuf};
 use sunbake::disk::manifest::Manifest;
@@ -42,22 +42,23 @@ fn entry_of(folder: &Path, manifest: &Manifest) -> SetEntry {
     }
 }
 
-/// The set that a way of playing back reads: one of as many lanes or, for a single one, any, whose middle lane it is.
+/// The set that a playback reads: the one with as many lanes or, for a single lane, any set, whose middle lane is then taken.
 pub(super) fn set_for(sets: &[SetOnDisk], playback: Playback) -> Option<&SetOnDisk> {
     let has = |set: &&SetOnDisk| set.entry.lanes == playback.lanes as u64;
     sets.iter().find(has).or_else(|| sets.first().filter(|_| playback.lanes == 1))
 }
 
-/// Stages of sets, the last one kept while it serves.
+/// Reads stages of sets, and keeps the last one for as long as it can be used again.
 pub(super) struct SetReader<'a> {
     pub sets: &'a [SetOnDisk],
+    /// Folder, lanes and bits of the stage that was read last.
     pub current: Option<(PathBuf, usize, Bits, Stage)>,
 }
 
 impl SetReader<'_> {
-    pub fn stage(&mut self, playback: Playback) -> Result<&Stage, Absent> {
+    pub fn stage(&mut self, playback: Playback) -> Result<&Stage, NotDrawn> {
         let set = set_for(self.sets, playback)
-            .ok_or_else(|| Absent::Other(format!("there is no set of {} lanes", playback.lanes)))?;
+            .ok_or_else(|| NotDrawn::Unsupported(format!("there is no set of {} lanes", playback.lanes)))?;
         let is_kept = |kept: &(PathBuf, usize, Bits, Stage)| {
             let (folder, lanes, bits, _) = kept;
             *folder == set.folder && *lanes == playback.lanes && (*bits == playback.bits || *bits == Bits::Sixteen)
