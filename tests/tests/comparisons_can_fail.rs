@@ -146,7 +146,7 @@ fn what_is_compared_with_itself_is_all_zeros_and_two_runs_agree() {
     let errors = |outcome: &sunbake_runtime::compare::Outcome| {
         outcome.techniques[0].frames.iter().map(|frame| frame.error).collect::<Vec<_>>()
     };
-    assert_eq!((errors(&a), a.techniques[0].error, &a.seen), (errors(&b), b.techniques[0].error, &b.seen));
+    assert_eq!((errors(&a), a.techniques[0].error, &a.visibility), (errors(&b), b.techniques[0].error, &b.visibility));
 }
 
 #[test]
