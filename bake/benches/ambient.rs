@@ -83,7 +83,7 @@ impl<'a> Page<'a> {
         let atlas: Atlas = atlas::build(scene, &settings, &|_| true).expect("an atlas");
         let geometry = Geometry::new(scene);
         let PageSamples { samples } = atlas::sample_page(scene, &geometry, &atlas, 0);
-        let order = atlas::by_tiles(&PageSamples { samples: samples.clone() }, atlas.pages[0]);
+        let order = atlas::in_tile_order(&PageSamples { samples: samples.clone() }, atlas.pages[0]);
         let texels = order.iter().map(|&i| samples[i as usize]).collect();
         let tracer = Tracer::new(scene, &geometry);
         Self { scene, normals: ShadingNormals::new(scene), tracer, geometry, texels }

@@ -275,7 +275,7 @@ fn runs_of_points(scene: &Scene, geometry: &Geometry, options: &Options) -> Vec<
     let mut runs = Vec::new();
     for (page, &size) in atlas.pages.iter().enumerate() {
         let samples = atlas::sample_page(scene, geometry, &atlas, page as u32);
-        let order = atlas::by_tiles(&samples, size);
+        let order = atlas::in_tile_order(&samples, size);
         let point = |&i: &u32| atlas::surface_point(scene, geometry, &samples.samples[i as usize]);
         runs.extend(order.chunks(RUN).map(|run| run.iter().map(point).collect::<Vec<_>>()));
     }

@@ -129,7 +129,12 @@ pub fn opaque() -> Material {
 
 /// A double-sided material whose texture cuts holes at alpha one half.
 pub fn cut(texture: TextureRef) -> Material {
-    Material { base_color_texture: Some(texture), alpha: Alpha::Cut { cutoff: 0.5 }, is_double_sided: true, ..opaque() }
+    Material {
+        base_color_texture: Some(texture),
+        alpha: Alpha::Mask { cutoff: 0.5 },
+        is_double_sided: true,
+        ..opaque()
+    }
 }
 
 /// The twelve triangles of an axis-aligned box, facing outwards.

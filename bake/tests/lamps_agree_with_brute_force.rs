@@ -98,7 +98,9 @@ impl Here {
         let surface = self.geometry.surface(triangle);
         let mesh = &self.scene.meshes[self.scene.instances[surface.instance].mesh];
         let material = &self.scene.materials[mesh.material];
-        let (Alpha::Cut { cutoff }, Some(texture)) = (material.alpha, material.base_color_texture) else { return true };
+        let (Alpha::Mask { cutoff }, Some(texture)) = (material.alpha, material.base_color_texture) else {
+            return true;
+        };
         let uvs = mesh.texcoords[0].as_ref().unwrap();
         let corner = |k: usize| uvs[mesh.indices[3 * surface.mesh_triangle + k] as usize].as_dvec2();
         let uv: DVec2 = corner(0) * (1.0 - v - w) + corner(1) * v + corner(2) * w;

@@ -155,7 +155,8 @@ impl Stage {
     ) -> Self {
         let normals = ShadingNormals::new(&scene);
         let geometry = Geometry::new(&scene);
-        let is_drawn = |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Air;
+        let is_drawn =
+            |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Invisible;
         let sides = sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let tracer = OnceLock::new();

@@ -110,7 +110,7 @@ fn textures_holes_colours_and_second_sides_cost_only_the_scenes_that_have_them()
         Mesh { indices: (0..36).collect(), positions, texcoords: [Some(uvs), None], colors, ..Mesh::default() }
     };
     let textured = Material { base_color_texture: Some(texture), ..opaque() };
-    let leaf = Material { alpha: Alpha::Cut { cutoff: 0.5 }, is_double_sided: true, ..textured.clone() };
+    let leaf = Material { alpha: Alpha::Mask { cutoff: 0.5 }, is_double_sided: true, ..textured.clone() };
     let at = |x: f64| [DMat4::from_translation(DVec3::new(x, 0.0, 0.0))];
     let builder = builder.mesh_of(mesh(false), textured.clone(), &at(0.0)).mesh_of(mesh(false), textured, &at(2.0));
     let plain = bake(builder.clone().build(), Some(equinox(35.0)), 6, Bits::Eight);
@@ -259,7 +259,7 @@ fn a_map_tests_alpha_only_where_something_has_holes() {
         let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
         let colors = Some(vec![Vec4::new(1.0, 1.0, 1.0, 0.4); 6]);
         let mesh = Mesh { positions, indices: (0..6).collect(), colors, ..Mesh::default() };
-        let material = Material { alpha: Alpha::Cut { cutoff: 0.5 }, ..opaque() };
+        let material = Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..opaque() };
         builder.mesh_of(mesh, material, &[DMat4::IDENTITY])
     };
     let plain = of_maps(Variant::Compare, |builder| builder.soup(&cube()));

@@ -71,7 +71,7 @@ fn everything(wrap: Wrap) -> Scene {
     let (builder, texture) = checker(wrap);
     let textured = Material { base_color_texture: Some(texture), ..opaque() };
     let lamp = Material { emissive: Vec3::new(0.4, 0.2, 0.1), is_unlit: true, ..opaque() };
-    let glass = Material { alpha: Alpha::Air, ..opaque() };
+    let glass = Material { alpha: Alpha::Invisible, ..opaque() };
     let wall: Vec<_> = floor(Vec2::splat(-1.5), Vec2::splat(1.5), 0.0)
         .iter()
         .map(|t| t.map(|v| Vec3::new(v.x, v.z + 1.7, 0.4)))

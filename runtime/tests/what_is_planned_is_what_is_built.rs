@@ -134,7 +134,7 @@ fn what_surfaces_have_adds_its_own() {
         assert_eq!(plan.need(effect).unwrap().takes, adds, "{effect}");
     };
     let one = Census { draws: 1, ..Census::default() };
-    let leaf = Material { alpha: Alpha::Cut { cutoff: 0.5 }, ..opaque() };
+    let leaf = Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..opaque() };
     let adds = Census { pipelines: 2, alpha_test_pipelines: 2, ..one };
     holds(&box_and(SceneBuilder::new(), quad(), leaf), "alpha-test", adds);
     let both = Material { is_double_sided: true, ..opaque() };
@@ -368,7 +368,7 @@ fn every_variant_of_maps_builds_what_is_planned_and_adds_its_own() {
     let boxed = Stage::plain(on_ground(with_box), sun(0.0047));
     let bare = Stage::plain(on_ground(|builder| builder), sun(0.0047));
     let leaf = |builder: SceneBuilder| {
-        let material = Material { alpha: Alpha::Cut { cutoff: 0.5 }, is_double_sided: true, ..opaque() };
+        let material = Material { alpha: Alpha::Mask { cutoff: 0.5 }, is_double_sided: true, ..opaque() };
         with_box(builder).mesh_of(quad(), material, &[DMat4::IDENTITY])
     };
     let leafy = Stage::plain(on_ground(leaf), sun(0.0047));

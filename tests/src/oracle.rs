@@ -137,7 +137,7 @@ impl<'a> Oracle<'a> {
 /// second of a day, and rays through their corners see spells that are not there.
 fn is_solid_at(scene: &Scene, instance: usize, triangle: usize, barycentric: [f64; 2]) -> bool {
     let material = scene.material(instance);
-    let Alpha::Cut { cutoff } = material.alpha else { return material.alpha == Alpha::Opaque };
+    let Alpha::Mask { cutoff } = material.alpha else { return material.alpha == Alpha::Opaque };
     let mesh = &scene.meshes[scene.instances[instance].mesh];
     let [v, w] = barycentric;
     let blend = |[a, b, c]: [f64; 3]| a * (1.0 - v - w) + b * v + c * w;

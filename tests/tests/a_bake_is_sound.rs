@@ -192,7 +192,7 @@ fn leaf_over_floor(cutoff: f32) -> Scene {
     };
     builder
         .soup(&floor(Vec2::splat(-2.0), Vec2::splat(2.0), 0.0))
-        .mesh_of(mesh, Material { alpha: Alpha::Cut { cutoff }, ..cut(texture) }, &[DMat4::IDENTITY])
+        .mesh_of(mesh, Material { alpha: Alpha::Mask { cutoff }, ..cut(texture) }, &[DMat4::IDENTITY])
         .build()
 }
 

@@ -19,8 +19,8 @@ use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
 /// A mesh to be placed, and every instance of it.
-pub(super) struct Item {
-    pub form: Form,
+pub(super) struct AtlasMesh {
+    pub form: MeshLayout,
     /// For each instance: its index in the scene, and metres a unit of object space.
     pub instances: Vec<(usize, f64)>,
     /// Share of the scene's density that this mesh gets: 1, or less if it would not fit a page.
@@ -28,16 +28,16 @@ pub(super) struct Item {
 }
 
 /// What is known of a mesh's layout.
-pub(super) enum Form {
+pub(super) enum MeshLayout {
     /// Charts still to be packed.
     Charts(Charts),
     /// A finished layout of the file's.
-    Given(Given),
+    FileLayout(FileLayout),
 }
 
 /// A finished layout: the box of [0, 1] that it uses, and its scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Given {
+pub(super) struct FileLayout {
     /// Least coordinates.
     pub low: DVec2,
     /// Extent.
@@ -53,25 +53,25 @@ pub(super) struct Given {
 struct Piece {
     shape: Shape,
     item: usize,
-    part: Part,
+    part: PieceKind,
 }
 
 /// Pieces that must share a page.
-struct Unit {
+struct PieceGroup {
     pieces: Vec<Piece>,
     texels: f64,
 }
 
 #[derive(Clone, Copy)]
-enum Part {
+enum PieceKind {
     /// A chart of a mesh that is packed loose.
     Chart(usize, ChartBox),
-    /// An instance, the index being into [`Item::instances`], and its content in texels.
+    /// An instance, the index being into [`AtlasMesh::instances`], and its content in texels.
     Instance(usize, DVec2),
 }
 
 /// Everything placed.
-pub(super) struct Plan {
+pub(super) struct AtlasPlan {
     pages: Vec<PlannedPage>,
     /// One per item that is packed as a tile.
     tiles: Vec<Option<Tile>>,
@@ -86,17 +86,17 @@ struct PlannedPage {
 
 /// What is placed, and on what.
 pub(super) struct Arrangement<'a> {
-    pub items: &'a [Item],
+    pub items: &'a [AtlasMesh],
     pub page_size_texels: u32,
     pub padding_texels: u32,
 }
 
-impl Item {
+impl AtlasMesh {
     /// Surface in the scene, over all instances.
     pub fn area_m2(&self) -> f64 {
         let object = match &self.form {
-            Form::Charts(charts) => charts.area(),
-            Form::Given(given) => given.uv_area * given.object_per_uv * given.object_per_uv,
+            MeshLayout::Charts(charts) => charts.area(),
+            MeshLayout::FileLayout(given) => given.uv_area * given.object_per_uv * given.object_per_uv,
         };
         object * self.instances.iter().map(|(_, k)| k * k).sum::<f64>()
     }
@@ -104,13 +104,13 @@ impl Item {
     /// Charts, each counted once however many instances show it. A layout of the file's counts as one.
     pub fn chart_count(&self) -> usize {
         match &self.form {
-            Form::Charts(charts) => charts.sizes.len(),
-            Form::Given(_) => 1,
+            MeshLayout::Charts(charts) => charts.sizes.len(),
+            MeshLayout::FileLayout(_) => 1,
         }
     }
 
     fn is_loose(&self) -> bool {
-        matches!(self.form, Form::Charts(_)) && self.instances.len() == 1
+        matches!(self.form, MeshLayout::Charts(_)) && self.instances.len() == 1
     }
 
     fn scales(&self) -> Vec<f64> {
@@ -120,12 +120,12 @@ impl Item {
 
 impl Arrangement<'_> {
     /// Places everything at a density in texels a metre, on at most `pages` pages; `None` if it does not fit.
-    pub fn at_density(&self, texels_per_metre: f64, pages: u32) -> Option<Plan> {
+    pub fn at_density(&self, texels_per_metre: f64, pages: u32) -> Option<AtlasPlan> {
         self.place(texels_per_metre, pages, self.page_size_texels)
     }
 
     /// Places everything on the smallest page, or as few pages as it takes, up to `most`.
-    pub fn compactly(&self, texels_per_metre: f64, most: u32) -> Option<Plan> {
+    pub fn compactly(&self, texels_per_metre: f64, most: u32) -> Option<AtlasPlan> {
         let (_, units) = self.units(texels_per_metre);
         let area: f64 = units.iter().map(|u| u.texels).sum();
         let mut side = (area.sqrt() * 1.02).ceil().max(16.0);
@@ -148,7 +148,7 @@ impl Arrangement<'_> {
         alone.at_density(texels_per_metre, instances).is_some()
     }
 
-    fn place(&self, texels_per_metre: f64, pages: u32, side: u32) -> Option<Plan> {
+    fn place(&self, texels_per_metre: f64, pages: u32, side: u32) -> Option<AtlasPlan> {
         let (tiles, units) = self.units(texels_per_metre);
         let dealt = deal(units, pages);
         let place_page = |mut pieces: Vec<Piece>| {
@@ -158,21 +158,22 @@ impl Arrangement<'_> {
             Some(PlannedPage { size, pieces, packed })
         };
         let pages = dealt.into_par_iter().map(place_page).collect::<Option<Vec<_>>>()?;
-        Some(Plan { pages, tiles, padding: self.padding_texels })
+        Some(AtlasPlan { pages, tiles, padding: self.padding_texels })
     }
 
     /// Tiles, and what must stay together on a page, with its area in texels.
-    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<Unit>) {
-        let of_item = |(index, item): (usize, &Item)| self.units_of_item(index, item, texels_per_metre * item.share);
+    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<PieceGroup>) {
+        let of_item =
+            |(index, item): (usize, &AtlasMesh)| self.units_of_item(index, item, texels_per_metre * item.share);
         let (tiles, units): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
         let measured = |pieces: Vec<Piece>| {
             let texels = pieces.iter().map(|p| p.shape.area()).sum();
-            Unit { pieces, texels }
+            PieceGroup { pieces, texels }
         };
         (tiles, units.into_iter().flatten().map(measured).collect())
     }
 
-    fn units_of_item(&self, item: usize, what: &Item, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
+    fn units_of_item(&self, item: usize, what: &AtlasMesh, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
         let (padding, scales) = (self.padding_texels, what.scales());
         let room = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
         let rectangles = |contents: Vec<DVec2>| {
@@ -180,24 +181,24 @@ impl Arrangement<'_> {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
                 let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
                 let shape = Shape::rectangle(width, height, false);
-                vec![Piece { shape, item, part: Part::Instance(slot, content) }]
+                vec![Piece { shape, item, part: PieceKind::Instance(slot, content) }]
             };
             contents.into_iter().enumerate().map(piece).collect()
         };
         match &what.form {
-            Form::Given(given) => {
+            MeshLayout::FileLayout(given) => {
                 let content = |k: &f64| given.size * given.object_per_uv * k * texels_per_metre;
                 (None, rectangles(scales.iter().map(content).collect()))
             }
-            Form::Charts(charts) if what.is_loose() => {
+            MeshLayout::Charts(charts) if what.is_loose() => {
                 let piece = |(chart, &size): (usize, &DVec2)| {
                     let chart_box = ChartBox::new(size, texels_per_metre * scales[0], room);
                     let shape = chart_box.shape(charts, chart, padding);
-                    Piece { shape, item, part: Part::Chart(chart, chart_box) }
+                    Piece { shape, item, part: PieceKind::Chart(chart, chart_box) }
                 };
                 (None, vec![charts.sizes.iter().enumerate().map(piece).collect()])
             }
-            Form::Charts(charts) => {
+            MeshLayout::Charts(charts) => {
                 let reference = reference_scale(charts, &scales, texels_per_metre, padding);
                 let largest = scales.iter().copied().fold(reference, f64::max);
                 let tile = Tile::new(charts, texels_per_metre * reference, padding, room * reference / largest);
@@ -209,11 +210,11 @@ impl Arrangement<'_> {
 }
 
 /// Deals units to pages, largest first, each to the page with most room. Empty pages are left out.
-fn deal(mut units: Vec<Unit>, pages: u32) -> Vec<Vec<Piece>> {
+fn deal(mut units: Vec<PieceGroup>, pages: u32) -> Vec<Vec<Piece>> {
     units.sort_by(|a, b| b.texels.total_cmp(&a.texels));
     let mut filled = vec![0.0f64; pages.max(1) as usize];
     let mut dealt = vec![Vec::new(); filled.len()];
-    for Unit { pieces, texels } in units {
+    for PieceGroup { pieces, texels } in units {
         let emptiest = (0..filled.len()).min_by(|&a, &b| filled[a].total_cmp(&filled[b])).unwrap_or(0);
         filled[emptiest] += texels;
         dealt[emptiest].extend(pieces);
@@ -222,26 +223,26 @@ fn deal(mut units: Vec<Unit>, pages: u32) -> Vec<Vec<Piece>> {
     dealt
 }
 
-impl Plan {
+impl AtlasPlan {
     /// Sizes of the pages.
     pub fn page_sizes(&self) -> Vec<PageSize> {
         self.pages.iter().map(|p| p.size).collect()
     }
 
     /// Placements by scene instance; those that nothing was planned for stay as they are.
-    pub fn write_placements(&self, items: &[Item], placements: &mut [Placement]) {
+    pub fn write_placements(&self, items: &[AtlasMesh], placements: &mut [Placement]) {
         for (page, planned) in self.pages.iter().enumerate() {
-            for (piece, spot) in planned.pieces.iter().zip(&planned.packed.spots) {
+            for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
                 let item = &items[piece.item];
                 let page_texels = planned.size.as_dvec2();
-                let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y)) + f64::from(self.padding);
+                let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
                 let (slot, scale, offset) = match (piece.part, &item.form) {
-                    (Part::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
-                    (Part::Instance(slot, content), Form::Given(given)) => {
+                    (PieceKind::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
+                    (PieceKind::Instance(slot, content), MeshLayout::FileLayout(given)) => {
                         let scale = content / given.size;
                         (slot, scale / page_texels, (corner - given.low * scale) / page_texels)
                     }
-                    (Part::Instance(slot, content), Form::Charts(_)) => {
+                    (PieceKind::Instance(slot, content), MeshLayout::Charts(_)) => {
                         (slot, content / page_texels, corner / page_texels)
                     }
                 };
@@ -252,13 +253,13 @@ impl Plan {
     }
 
     /// For each item, the layout coordinates of its vertices; none for a layout that was given.
-    pub fn layout_uvs(&self, items: &[Item]) -> Vec<Vec<Vec2>> {
-        let homes = self.homes(items);
-        let of_item = |(index, item): (usize, &Item)| {
-            let Form::Charts(charts) = &item.form else { return Vec::new() };
+    pub fn layout_uvs(&self, items: &[AtlasMesh]) -> Vec<Vec<Vec2>> {
+        let chart_positions = self.chart_positions(items);
+        let of_item = |(index, item): (usize, &AtlasMesh)| {
+            let MeshLayout::Charts(charts) = &item.form else { return Vec::new() };
             let uv = |(&point, &chart): (&DVec2, &u32)| match &self.tiles[index] {
                 Some(tile) => tile.uv(chart as usize, point),
-                None => homes[index][chart as usize].uv(point),
+                None => chart_positions[index][chart as usize].uv(point),
             };
             charts.points.iter().zip(&charts.chart_of).map(|vertex| uv(vertex).as_vec2()).collect()
         };
@@ -266,41 +267,43 @@ impl Plan {
     }
 
     /// For each item, where its charts went; none for one that is not packed loose.
-    fn homes(&self, items: &[Item]) -> Vec<Vec<Home>> {
-        let count = |item: &Item| match &item.form {
-            Form::Charts(charts) if item.is_loose() => charts.sizes.len(),
+    fn chart_positions(&self, items: &[AtlasMesh]) -> Vec<Vec<ChartPosition>> {
+        let count = |item: &AtlasMesh| match &item.form {
+            MeshLayout::Charts(charts) if item.is_loose() => charts.sizes.len(),
             _ => 0,
         };
-        let mut homes: Vec<_> = items.iter().map(|item| vec![Home::default(); count(item)]).collect();
+        let mut chart_positions: Vec<_> =
+            items.iter().map(|item| vec![ChartPosition::default(); count(item)]).collect();
         for planned in &self.pages {
-            for (piece, spot) in planned.pieces.iter().zip(&planned.packed.spots) {
-                if let Part::Chart(chart, chart_box) = piece.part {
-                    let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y)) + f64::from(self.padding);
+            for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
+                if let PieceKind::Chart(chart, chart_box) = piece.part {
+                    let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
                     let page_texels = planned.size.as_dvec2();
-                    homes[piece.item][chart] = Home { corner, chart_box, turns: spot.turns, page_texels };
+                    chart_positions[piece.item][chart] =
+                        ChartPosition { corner, chart_box, turns: position.turns, page_texels };
                 }
             }
         }
-        homes
+        chart_positions
     }
 }
 
 /// Where a chart that is packed loose lies.
 #[derive(Clone, Copy)]
-struct Home {
+struct ChartPosition {
     corner: DVec2,
     chart_box: ChartBox,
     turns: u8,
     page_texels: DVec2,
 }
 
-impl Home {
+impl ChartPosition {
     fn uv(&self, point: DVec2) -> DVec2 {
         (self.corner + self.chart_box.texel(point, self.turns)) / self.page_texels
     }
 }
 
-impl Default for Home {
+impl Default for ChartPosition {
     fn default() -> Self {
         let chart_box = ChartBox { density: 0.0, cells: (1, 1), slack: DVec2::ZERO };
         Self { corner: DVec2::ZERO, chart_box, turns: 0, page_texels: DVec2::ONE }

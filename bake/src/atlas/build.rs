@@ -1,8 +1,8 @@
 //! Making an atlas: judge what the file brings, unwrap the rest, find the density, place everything.
 
-use super::arrange::{Form, Item, Plan};
+use super::arrange::{AtlasMesh, AtlasPlan, MeshLayout};
 use super::error::AtlasError;
-use super::meter::{Meter, UNWRAP_SHARE};
+use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::search::{MOST_PAGES, find_plan};
 use super::unwrap::{self, Charts};
 use super::{Atlas, AtlasSettings, Density, Layout, LayoutOrigin, Placement};
@@ -19,7 +19,7 @@ pub fn build(
     progress: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<Atlas, AtlasError> {
     check(settings)?;
-    let meter = Meter::new(progress);
+    let meter = ProgressMeter::new(progress);
     let drawn = drawn_instances(scene);
     if let Some(atlas) = shared::shared_square(scene, settings, &drawn) {
         return Ok(atlas);
@@ -37,7 +37,7 @@ pub fn build(
         }
         for item in crowded {
             let mesh = scene.instances[items[item].instances[0].0].mesh;
-            items[item].form = Form::Charts(unwrap_mesh(scene, mesh, &meter)?);
+            items[item].form = MeshLayout::Charts(unwrap_mesh(scene, mesh, &meter)?);
         }
     }
 }
@@ -82,7 +82,7 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     };
     let solid: Vec<usize> = (0..scene.instances.len())
         .filter(|&i| {
-            scene.material(i).alpha != Alpha::Air && scene.meshes[scene.instances[i].mesh].triangle_count() > 0
+            scene.material(i).alpha != Alpha::Invisible && scene.meshes[scene.instances[i].mesh].triangle_count() > 0
         })
         .collect();
     let scales: Vec<f64> = solid.par_iter().map(scale).collect();
@@ -98,39 +98,39 @@ fn make_items(
     scene: &Scene,
     settings: &AtlasSettings,
     drawn: &[Vec<(usize, f64)>],
-    meter: &Meter,
-) -> Result<Vec<Item>, AtlasError> {
+    meter: &ProgressMeter,
+) -> Result<Vec<AtlasMesh>, AtlasError> {
     let meshes: Vec<usize> = (0..drawn.len()).filter(|&m| !drawn[m].is_empty()).collect();
     let total: usize = meshes.iter().map(|&m| scene.meshes[m].triangle_count()).sum();
     let done = std::sync::atomic::AtomicUsize::new(0);
     let item = |&mesh: &usize| {
-        let given = settings.keeps_existing.then(|| existing::judge_alone(&scene.meshes[mesh]).ok()).flatten();
+        let given = settings.keeps_existing.then(|| existing::check_own_rectangle(&scene.meshes[mesh]).ok()).flatten();
         let form = match given {
-            Some(given) => Form::Given(given),
-            None => Form::Charts(unwrap_mesh(scene, mesh, meter)?),
+            Some(given) => MeshLayout::FileLayout(given),
+            None => MeshLayout::Charts(unwrap_mesh(scene, mesh, meter)?),
         };
         let count = scene.meshes[mesh].triangle_count();
         let done = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed) + count;
         meter.reach(UNWRAP_SHARE * done as f64 / total as f64);
-        Ok(Item { form, instances: drawn[mesh].clone(), share: 1.0 })
+        Ok(AtlasMesh { form, instances: drawn[mesh].clone(), share: 1.0 })
     };
     meshes.par_iter().map(item).collect()
 }
 
-fn unwrap_mesh(scene: &Scene, mesh: usize, meter: &Meter) -> Result<Charts, AtlasError> {
+fn unwrap_mesh(scene: &Scene, mesh: usize, meter: &ProgressMeter) -> Result<Charts, AtlasError> {
     unwrap::unwrap(&scene.meshes[mesh], &|| meter.reach(0.0)).ok_or(AtlasError::Cancelled)
 }
 
 /// The atlas of a plan.
-fn assemble(scene: &Scene, items: &[Item], plan: &Plan) -> Atlas {
+fn assemble(scene: &Scene, items: &[AtlasMesh], plan: &AtlasPlan) -> Atlas {
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     plan.write_placements(items, &mut placements);
     let mut layouts: Vec<Option<Layout>> = vec![None; scene.meshes.len()];
     for (item, uvs) in items.iter().zip(plan.layout_uvs(items)) {
         let mesh = scene.instances[item.instances[0].0].mesh;
         layouts[mesh] = Some(match &item.form {
-            Form::Given(_) => Layout::of_file(&scene.meshes[mesh]),
-            Form::Charts(charts) => Layout {
+            MeshLayout::FileLayout(_) => Layout::of_file(&scene.meshes[mesh]),
+            MeshLayout::Charts(charts) => Layout {
                 origin: LayoutOrigin::Unwrapped,
                 vertices: charts.vertices.clone(),
                 uvs,
@@ -148,10 +148,10 @@ fn assemble(scene: &Scene, items: &[Item], plan: &Plan) -> Atlas {
         layouts,
         placements,
         texels_per_metre: 0.0,
-        chart_count: items.iter().map(Item::chart_count).sum(),
+        chart_count: items.iter().map(AtlasMesh::chart_count).sum(),
         warnings: Vec::new(),
     };
-    let area_m2: f64 = items.iter().map(Item::area_m2).sum();
+    let area_m2: f64 = items.iter().map(AtlasMesh::area_m2).sum();
     atlas.texels_per_metre =
         if area_m2 > 0.0 { (measure::covered_texels(scene, &atlas) / area_m2).sqrt() } else { 0.0 };
     atlas

@@ -1,7 +1,7 @@
 //! Which texels a triangle touches.
 //!
 //! Theory: conservative rasterisation. A texel is touched if its square and the triangle have more than a hair
-//! ([`HAIR_TEXELS`]) in common. Within one row of texels a triangle's part is convex, so it touches one run of them.
+//! ([`EPSILON_TEXELS`]) in common. Within one row of texels a triangle's part is convex, so it touches one run of them.
 //!
 //! Practice: a border that lies on a line between two texels, as charts' borders often do, must not claim the texels
 //! beyond it: hence the hair. A triangle thinner than the hair still gets the one row, and in each row the one texel, that
@@ -11,7 +11,7 @@ use glam::DVec2;
 use std::ops::Range;
 
 /// Overlap that does not count, in texels: above the rounding of `f32` coordinates on a page of 8192 texels.
-pub(super) const HAIR_TEXELS: f64 = 1.0 / 512.0;
+pub(super) const EPSILON_TEXELS: f64 = 1.0 / 512.0;
 
 /// A triangle in texels of its page.
 pub(super) type TexelTriangle = [DVec2; 3];
@@ -25,7 +25,7 @@ pub(super) fn rows(corners: &TexelTriangle, height: u32) -> Range<u32> {
 
 /// Texel columns that the triangle touches within a row that [`rows`] named.
 pub(super) fn columns(corners: &TexelTriangle, row: u32, width: u32) -> Range<u32> {
-    let (bottom, top) = (f64::from(row) - HAIR_TEXELS, f64::from(row) + 1.0 + HAIR_TEXELS);
+    let (bottom, top) = (f64::from(row) - EPSILON_TEXELS, f64::from(row) + 1.0 + EPSILON_TEXELS);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let mut add = |x: f64| (low, high) = (low.min(x), high.max(x));
     for k in 0..3 {
@@ -45,7 +45,7 @@ pub(super) fn columns(corners: &TexelTriangle, row: u32, width: u32) -> Range<u3
 /// Cells of unit length that [low, high] overlaps by more than a hair; else the one its middle lies in.
 fn cells(low: f64, high: f64, count: u32) -> Range<u32> {
     let last = f64::from(count) - 1.0;
-    let (first, end) = ((low + HAIR_TEXELS).floor(), (high - HAIR_TEXELS).ceil());
+    let (first, end) = ((low + EPSILON_TEXELS).floor(), (high - EPSILON_TEXELS).ceil());
     let (first, end) =
         if first < end { (first, end) } else { (((low + high) * 0.5).floor(), ((low + high) * 0.5).floor() + 1.0) };
     let first = first.clamp(0.0, last);

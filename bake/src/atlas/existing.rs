@@ -11,7 +11,7 @@
 //! do not overlap but spread a few specks over the whole square, and would starve the rest of the page.
 
 use super::PageSize;
-use super::arrange::Given;
+use super::arrange::FileLayout;
 use super::coverage;
 use super::overlap::{Triangle, area2, overlap_more_than};
 use crate::scene::{Mesh, Scene};
@@ -29,13 +29,13 @@ const LEAST_FILL: f64 = 0.25;
 /// Marks a texel with two owners.
 const CROWDED: u32 = u32::MAX;
 /// Marks a texel without one.
-const NOBODY: u32 = u32::MAX - 1;
+const UNOWNED: u32 = u32::MAX - 1;
 /// How far outside [0, 1] is still rounding.
 const ROUNDING: f32 = 1e-5;
 
 /// Why a set cannot serve as a layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Objection {
+pub(super) enum LayoutProblem {
     /// The mesh has no such set.
     Missing,
     /// NaN or infinite.
@@ -51,30 +51,30 @@ pub(super) enum Objection {
 }
 
 /// The mesh's `TEXCOORD_1`, if it can serve.
-pub(super) fn judge(mesh: &Mesh) -> Result<Given, Objection> {
-    let uvs = mesh.texcoords[1].as_deref().ok_or(Objection::Missing)?;
+pub(super) fn check_layout(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
+    let uvs = mesh.texcoords[1].as_deref().ok_or(LayoutProblem::Missing)?;
     let used = mesh.indices.iter().map(|&i| uvs[i as usize]);
     if !used.clone().all(|uv| uv.is_finite()) {
-        return Err(Objection::NotFinite);
+        return Err(LayoutProblem::NotFinite);
     }
     let (least, most) = (Vec2::splat(-ROUNDING), Vec2::splat(1.0 + ROUNDING));
     if !used.clone().all(|uv| uv.cmpge(least).all() && uv.cmple(most).all()) {
-        return Err(Objection::Outside);
+        return Err(LayoutProblem::Outside);
     }
     let triangles = triangles(mesh, uvs);
-    let (object_area, uv_area) = areas(mesh, &triangles).ok_or(Objection::NoArea)?;
+    let (object_area, uv_area) = areas(mesh, &triangles).ok_or(LayoutProblem::NoArea)?;
     if overlap_more_than(&without_copies(mesh, &triangles), OVERLAP_SHARE) {
-        return Err(Objection::Overlap);
+        return Err(LayoutProblem::Overlap);
     }
     let low = used.clone().reduce(Vec2::min).unwrap_or_default().as_dvec2();
     let high = used.reduce(Vec2::max).unwrap_or_default().as_dvec2();
-    Ok(Given { low, size: high - low, object_per_uv: (object_area / uv_area).sqrt(), uv_area })
+    Ok(FileLayout { low, size: high - low, object_per_uv: (object_area / uv_area).sqrt(), uv_area })
 }
 
 /// Whether the set fills enough of its box to be given a rectangle.
-pub(super) fn judge_alone(mesh: &Mesh) -> Result<Given, Objection> {
-    let given = judge(mesh)?;
-    if given.uv_area < LEAST_FILL * given.size.x * given.size.y { Err(Objection::Sparse) } else { Ok(given) }
+pub(super) fn check_own_rectangle(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
+    let given = check_layout(mesh)?;
+    if given.uv_area < LEAST_FILL * given.size.x * given.size.y { Err(LayoutProblem::Sparse) } else { Ok(given) }
 }
 
 /// Whether the meshes, all valid and each drawn once, use different parts of one [0, 1].
@@ -131,7 +131,7 @@ fn object_area(mesh: &Mesh, triangle: &[u32]) -> f64 {
 /// Of the texels that the meshes' `TEXCOORD_1` touch on a page of this size, the share that two islands touch.
 /// `place` takes texture coordinates to texels.
 pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVec2) -> DVec2) -> f64 {
-    let mut owners = vec![NOBODY; size.texel_count()];
+    let mut owners = vec![UNOWNED; size.texel_count()];
     let (mut touched, mut crowded, mut base) = (0u32, 0u32, 0u32);
     for mesh in meshes {
         let Some(uvs) = mesh.texcoords[1].as_deref() else { continue };
@@ -142,7 +142,7 @@ pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVe
             for y in coverage::rows(&corners, size.height) {
                 for x in coverage::columns(&corners, y, size.width) {
                     let owner = &mut owners[(y * size.width + x) as usize];
-                    if *owner == NOBODY {
+                    if *owner == UNOWNED {
                         *owner = mine;
                         touched += 1;
                     } else if *owner != mine && *owner != CROWDED {

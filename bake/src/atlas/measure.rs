@@ -1,6 +1,6 @@
 //! What an atlas came to: texels, and what to tell the user.
 
-use super::arrange::{Form, Item};
+use super::arrange::{AtlasMesh, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density};
 use crate::scene::Scene;
@@ -31,9 +31,14 @@ fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
 }
 
 /// Says which mesh did not get the density asked for.
-pub(super) fn fit_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item], atlas: &Atlas) -> Option<String> {
+pub(super) fn fit_warning(
+    scene: &Scene,
+    settings: &AtlasSettings,
+    items: &[AtlasMesh],
+    atlas: &Atlas,
+) -> Option<String> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
-    let reached = |item: &Item| {
+    let reached = |item: &AtlasMesh| {
         let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.0)).sum();
         (texels / item.area_m2()).sqrt()
     };
@@ -48,10 +53,12 @@ pub(super) fn fit_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item
 }
 
 /// Items with a layout of the file's whose islands lie too close together at the size they got.
-pub(super) fn crowded_items(scene: &Scene, items: &[Item], atlas: &Atlas) -> Vec<usize> {
-    let is_crowded = |item: &Item| {
+pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -> Vec<usize> {
+    let is_crowded = |item: &AtlasMesh| {
         let smallest = item.instances.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some(&(instance, _)) = smallest.filter(|_| matches!(item.form, Form::Given(_))) else { return false };
+        let Some(&(instance, _)) = smallest.filter(|_| matches!(item.form, MeshLayout::FileLayout(_))) else {
+            return false;
+        };
         let size = atlas.pages[atlas.placements[instance].page as usize];
         let mesh = &scene.meshes[scene.instances[instance].mesh];
         existing::crowded_share(&[mesh], size, |uv| atlas.texel(instance, uv.as_vec2(), size)) > CROWDED_SHARE
@@ -60,9 +67,10 @@ pub(super) fn crowded_items(scene: &Scene, items: &[Item], atlas: &Atlas) -> Vec
 }
 
 /// Says how many meshes brought a `TEXCOORD_1` that could not be used.
-pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[Item]) -> Option<String> {
-    let mesh = |item: &Item| &scene.meshes[scene.instances[item.instances[0].0].mesh];
-    let is_refused = |item: &&Item| matches!(item.form, Form::Charts(_)) && mesh(item).texcoords[1].is_some();
+pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<String> {
+    let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let is_refused =
+        |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
     let count = items.iter().filter(is_refused).count();
     (settings.keeps_existing && count > 0).then(|| {
         format!("TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or is crowded: they were unwrapped anew")

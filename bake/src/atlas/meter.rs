@@ -6,13 +6,13 @@ use std::sync::Mutex;
 pub(super) const UNWRAP_SHARE: f64 = 0.7;
 
 /// Reports progress, and remembers that it was told to stop.
-pub(super) struct Meter<'a> {
+pub(super) struct ProgressMeter<'a> {
     callback: &'a (dyn Fn(f64) -> bool + Sync),
     /// Furthest reported, and whether to go on.
     state: Mutex<(f64, bool)>,
 }
 
-impl<'a> Meter<'a> {
+impl<'a> ProgressMeter<'a> {
     /// Nothing reported yet.
     pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
         Self { callback, state: Mutex::new((0.0, true)) }

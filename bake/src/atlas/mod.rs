@@ -13,7 +13,7 @@ mod coverage;
 mod error;
 mod existing;
 mod footprint;
-mod gaps;
+mod free_space;
 mod gutter;
 mod measure;
 mod meter;
@@ -32,7 +32,7 @@ pub use build::build;
 pub use error::AtlasError;
 pub use footprint::Footprint;
 pub use gutter::{GutterTexel, gutter};
-pub use samples::{by_tiles, sample_finer, sample_page, surface_point};
+pub use samples::{in_tile_order, sample_page, sample_page_supersampled, surface_point};
 
 /// What an atlas is built to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -165,7 +165,7 @@ impl Layout {
 }
 
 /// An instance's rectangle: `page_uv = layout_uv * scale + offset`. An instance whose surface is air
-/// ([`crate::scene::Alpha::Air`]) has no texels: see [`Placement::is_empty`].
+/// ([`crate::scene::Alpha::Invisible`]) has no texels: see [`Placement::is_empty`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Index in [`Atlas::pages`].

@@ -14,7 +14,7 @@
 //! * A triangle whose texture coordinates have no area takes only texels that no other triangle touches, and is sampled
 //!   at its middle.
 
-use super::coverage::{self, HAIR_TEXELS, TexelTriangle};
+use super::coverage::{self, EPSILON_TEXELS, TexelTriangle};
 use super::overlap::clip;
 use super::{Atlas, PageSamples, PageSize, Sample, SurfacePoint};
 use crate::scene::{Geometry, Scene};
@@ -37,14 +37,14 @@ const NO_AREA_PENALTY: f64 = 4.0;
 const NO_AREA_TEXELS: f64 = 1e-12;
 
 /// A triangle on the page.
-struct Patch {
+struct PageTriangle {
     corners: TexelTriangle,
     /// Twice the signed area, in texels.
     area2: f64,
     triangle: u32,
 }
 
-impl Patch {
+impl PageTriangle {
     fn has_area(&self) -> bool {
         self.area2.abs() > NO_AREA_TEXELS
     }
@@ -89,24 +89,31 @@ impl Patch {
 
 /// Every covered texel of a page with its surface point. A texel is covered if some triangle touches it.
 pub fn sample_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32) -> PageSamples {
-    sample_finer(scene, geometry, atlas, page, 1)
+    sample_page_supersampled(scene, geometry, atlas, page, 1)
 }
 
 /// The same on a grid that is `finer` times as fine along each edge: every texel is cut into that many by that many, and
 /// those that some triangle touches have a point each. `texel` counts in the finer grid.
-pub fn sample_finer(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, finer: u32) -> PageSamples {
+pub fn sample_page_supersampled(
+    scene: &Scene,
+    geometry: &Geometry,
+    atlas: &Atlas,
+    page: u32,
+    finer: u32,
+) -> PageSamples {
     let Some(&PageSize { width, height }) = atlas.pages.get(page as usize) else {
         return PageSamples::default();
     };
     let size = PageSize { width: width * finer, height: height * finer };
-    let patches = patches_of_page(scene, geometry, atlas, page, size);
-    let bands = bands(&patches, size);
-    let samples = bands.par_iter().enumerate().map(|(band, members)| sample_band(&patches, members, band as u32, size));
+    let page_triangles = triangles_of_page(scene, geometry, atlas, page, size);
+    let bands = bands(&page_triangles, size);
+    let samples =
+        bands.par_iter().enumerate().map(|(band, members)| sample_band(&page_triangles, members, band as u32, size));
     PageSamples { samples: samples.collect::<Vec<_>>().concat() }
 }
 
 /// Indices of a page's samples, tile by tile, so that what follows one another in the list lies side by side on a surface.
-pub fn by_tiles(PageSamples { samples }: &PageSamples, size: PageSize) -> Vec<u32> {
+pub fn in_tile_order(PageSamples { samples }: &PageSamples, size: PageSize) -> Vec<u32> {
     let place = |index: &u32| {
         let (x, y) = (samples[*index as usize].texel % size.width, samples[*index as usize].texel / size.width);
         (y / TILE, x / TILE, interleaved(x % TILE, y % TILE))
@@ -134,7 +141,13 @@ pub fn surface_point(scene: &Scene, geometry: &Geometry, sample: &Sample) -> Sur
 }
 
 /// Triangles of all instances on the page, in the order of their index.
-fn patches_of_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, size: PageSize) -> Vec<Patch> {
+fn triangles_of_page(
+    scene: &Scene,
+    geometry: &Geometry,
+    atlas: &Atlas,
+    page: u32,
+    size: PageSize,
+) -> Vec<PageTriangle> {
     let on_page = |&(_, p): &(usize, &super::Placement)| p.page == page && !p.is_empty();
     let placed: Vec<_> = atlas.placements.iter().enumerate().filter(on_page).collect();
     let of_instance = |(instance, _): (usize, &super::Placement)| {
@@ -143,17 +156,17 @@ fn patches_of_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32,
         layout.indices.chunks_exact(3).zip(first..).map(move |(corners, triangle)| {
             let corners = [0, 1, 2].map(|k| atlas.texel(instance, layout.uvs[corners[k] as usize], size));
             let area2 = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
-            Patch { corners, area2, triangle }
+            PageTriangle { corners, area2, triangle }
         })
     };
     placed.into_par_iter().flat_map_iter(of_instance).collect()
 }
 
 /// For each band of rows, the patches that touch it.
-fn bands(patches: &[Patch], size: PageSize) -> Vec<Vec<u32>> {
+fn bands(page_triangles: &[PageTriangle], size: PageSize) -> Vec<Vec<u32>> {
     let mut bands = vec![Vec::new(); size.height.div_ceil(BAND_ROWS) as usize];
-    for (index, patch) in patches.iter().enumerate() {
-        let rows = coverage::rows(&patch.corners, size.height);
+    for (index, page_triangle) in page_triangles.iter().enumerate() {
+        let rows = coverage::rows(&page_triangle.corners, size.height);
         for band in rows.start / BAND_ROWS..=(rows.end - 1) / BAND_ROWS {
             bands[band as usize].push(index as u32);
         }
@@ -161,18 +174,18 @@ fn bands(patches: &[Patch], size: PageSize) -> Vec<Vec<u32>> {
     bands
 }
 
-fn sample_band(patches: &[Patch], members: &[u32], band: u32, size: PageSize) -> Vec<Sample> {
+fn sample_band(page_triangles: &[PageTriangle], members: &[u32], band: u32, size: PageSize) -> Vec<Sample> {
     let rows = band * BAND_ROWS..((band + 1) * BAND_ROWS).min(size.height);
     let mut best = vec![(f32::INFINITY, 0u32); (rows.len()) * size.width as usize];
     for &member in members {
-        let patch = &patches[member as usize];
-        let touched = coverage::rows(&patch.corners, size.height);
+        let page_triangle = &page_triangles[member as usize];
+        let touched = coverage::rows(&page_triangle.corners, size.height);
         for y in touched.start.max(rows.start)..touched.end.min(rows.end) {
             let row = &mut best[((y - rows.start) * size.width) as usize..][..size.width as usize];
-            for x in coverage::columns(&patch.corners, y, size.width) {
+            for x in coverage::columns(&page_triangle.corners, y, size.width) {
                 let slot = &mut row[x as usize];
                 if slot.0 > 0.0 {
-                    let rank = patch.rank(texel_centre(x, y)) as f32;
+                    let rank = page_triangle.rank(texel_centre(x, y)) as f32;
                     if rank < slot.0 {
                         *slot = (rank, member);
                     }
@@ -184,7 +197,7 @@ fn sample_band(patches: &[Patch], members: &[u32], band: u32, size: PageSize) ->
     covered
         .map(|(index, &(_, member))| {
             let texel = rows.start * size.width + index as u32;
-            sample_texel(&patches[member as usize], texel, size)
+            sample_texel(&page_triangles[member as usize], texel, size)
         })
         .collect()
 }
@@ -193,28 +206,28 @@ fn texel_centre(x: u32, y: u32) -> DVec2 {
     DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
 
-fn sample_texel(patch: &Patch, texel: u32, size: PageSize) -> Sample {
+fn sample_texel(page_triangle: &PageTriangle, texel: u32, size: PageSize) -> Sample {
     let (x, y) = (texel % size.width, texel / size.width);
     let centre = texel_centre(x, y);
-    let point = if !patch.contains(centre) {
-        let part = part_in_texel(patch, x, y);
+    let point = if !page_triangle.contains(centre) {
+        let part = part_in_texel(page_triangle, x, y);
         nearest_on(&part, centre).lerp(middle(&part), PULL_OFF_CENTRE)
-    } else if patch.heights(centre).iter().any(|&height| height < BORDER_TEXELS) {
-        centre.lerp(middle(&part_in_texel(patch, x, y)), PULL_CENTRE)
+    } else if page_triangle.heights(centre).iter().any(|&height| height < BORDER_TEXELS) {
+        centre.lerp(middle(&part_in_texel(page_triangle, x, y)), PULL_CENTRE)
     } else {
         centre
     };
-    Sample { texel, triangle: patch.triangle, barycentric: patch.barycentric(point) }
+    Sample { texel, triangle: page_triangle.triangle, barycentric: page_triangle.barycentric(point) }
 }
 
 /// The triangle's part within a texel, which is taken with the hair by which triangles may miss it; the whole triangle
 /// should rounding leave nothing.
-fn part_in_texel(patch: &Patch, x: u32, y: u32) -> Vec<DVec2> {
-    let low = DVec2::new(f64::from(x), f64::from(y)) - 2.0 * HAIR_TEXELS;
-    let high = low + 1.0 + 4.0 * HAIR_TEXELS;
+fn part_in_texel(page_triangle: &PageTriangle, x: u32, y: u32) -> Vec<DVec2> {
+    let low = DVec2::new(f64::from(x), f64::from(y)) - 2.0 * EPSILON_TEXELS;
+    let high = low + 1.0 + 4.0 * EPSILON_TEXELS;
     let sides = [(DVec2::X, low.x), (DVec2::Y, low.y), (DVec2::NEG_X, -high.x), (DVec2::NEG_Y, -high.y)];
-    let part = sides.iter().fold(patch.corners.to_vec(), |part, &(normal, offset)| clip(&part, normal, offset));
-    if part.is_empty() { patch.corners.to_vec() } else { part }
+    let part = sides.iter().fold(page_triangle.corners.to_vec(), |part, &(normal, offset)| clip(&part, normal, offset));
+    if part.is_empty() { page_triangle.corners.to_vec() } else { part }
 }
 
 fn middle(polygon: &[DVec2]) -> DVec2 {

@@ -3,9 +3,9 @@
 //! Practice: pages are given and the density sought by bisection, or the density is given and pages are added. Every guess
 //! packs anew; see [`super::strip`] for why that can be afforded.
 
-use super::arrange::{Arrangement, Item, Plan};
+use super::arrange::{Arrangement, AtlasMesh, AtlasPlan};
 use super::error::AtlasError;
-use super::meter::{Meter, UNWRAP_SHARE};
+use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::{AtlasSettings, Density};
 
 /// How near to the best density the search comes.
@@ -18,10 +18,10 @@ const LEAST_SHARE: f64 = 1e-4;
 /// Finds the density, and places everything at it.
 pub(super) fn find_plan(
     settings: &AtlasSettings,
-    items: &mut [Item],
+    items: &mut [AtlasMesh],
     warnings: &mut Vec<String>,
-    meter: &Meter,
-) -> Result<Plan, AtlasError> {
+    meter: &ProgressMeter,
+) -> Result<AtlasPlan, AtlasError> {
     match settings.density {
         Density::TexelsPerMetre(density) => plan_at_density(settings, density, items, meter),
         Density::Pages(pages) => plan_for_pages(settings, pages, items, warnings, meter),
@@ -31,10 +31,10 @@ pub(super) fn find_plan(
 fn plan_at_density(
     settings: &AtlasSettings,
     density: f64,
-    items: &mut [Item],
-    meter: &Meter,
-) -> Result<Plan, AtlasError> {
-    let texels = (items.iter().map(Item::area_m2).sum::<f64>() * density * density) as u64;
+    items: &mut [AtlasMesh],
+    meter: &ProgressMeter,
+) -> Result<AtlasPlan, AtlasError> {
+    let texels = (items.iter().map(AtlasMesh::area_m2).sum::<f64>() * density * density) as u64;
     if texels > settings.most_texels {
         return Err(AtlasError::TooDense { density_per_metre: density, texels, most: settings.most_texels });
     }
@@ -56,10 +56,10 @@ fn plan_at_density(
 fn plan_for_pages(
     settings: &AtlasSettings,
     pages: u32,
-    items: &[Item],
+    items: &[AtlasMesh],
     warnings: &mut Vec<String>,
-    meter: &Meter,
-) -> Result<Plan, AtlasError> {
+    meter: &ProgressMeter,
+) -> Result<AtlasPlan, AtlasError> {
     let mut count = pages;
     loop {
         if let Some((plan, density)) = densest(settings, count, items, meter) {
@@ -84,10 +84,15 @@ fn plan_for_pages(
 
 /// The plan of highest density on this many pages, and that density in texels a metre. None if they fit at no density
 /// worth having.
-fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) -> Option<(Plan, f64)> {
+fn densest(
+    settings: &AtlasSettings,
+    pages: u32,
+    items: &[AtlasMesh],
+    meter: &ProgressMeter,
+) -> Option<(AtlasPlan, f64)> {
     let arrangement = arrangement(settings, items);
     let page = f64::from(settings.page_size_texels);
-    let area_m2: f64 = items.iter().map(Item::area_m2).sum();
+    let area_m2: f64 = items.iter().map(AtlasMesh::area_m2).sum();
     let full = if area_m2 > 0.0 { (f64::from(pages) * page * page / area_m2).sqrt() } else { 1.0 };
     let mut high = full;
     let mut low = full * 0.75;
@@ -113,14 +118,14 @@ fn densest(settings: &AtlasSettings, pages: u32, items: &[Item], meter: &Meter) 
     meter.reach(UNWRAP_SHARE).then_some((best, low))
 }
 
-fn arrangement<'a>(settings: &AtlasSettings, items: &'a [Item]) -> Arrangement<'a> {
+fn arrangement<'a>(settings: &AtlasSettings, items: &'a [AtlasMesh]) -> Arrangement<'a> {
     Arrangement { items, page_size_texels: settings.page_size_texels, padding_texels: settings.padding_texels }
 }
 
-fn stopped_or_too_small(settings: &AtlasSettings, items: &[Item], meter: &Meter) -> AtlasError {
+fn stopped_or_too_small(settings: &AtlasSettings, items: &[AtlasMesh], meter: &ProgressMeter) -> AtlasError {
     if !meter.reach(0.0) {
         return AtlasError::Cancelled;
     }
-    let charts = items.iter().map(Item::chart_count).sum();
+    let charts = items.iter().map(AtlasMesh::chart_count).sum();
     AtlasError::PageTooSmall { charts, padding: settings.padding_texels, page_size: settings.page_size_texels }
 }

@@ -12,7 +12,8 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     if !settings.keeps_existing || meshes.is_empty() || meshes.iter().any(|&m| drawn[m].len() > 1) {
         return None;
     }
-    let given: Vec<_> = meshes.par_iter().map(|&m| existing::judge(&scene.meshes[m]).ok()).collect::<Option<_>>()?;
+    let given: Vec<_> =
+        meshes.par_iter().map(|&m| existing::check_layout(&scene.meshes[m]).ok()).collect::<Option<_>>()?;
     if !existing::share_one_square(scene, &meshes) {
         return None;
     }

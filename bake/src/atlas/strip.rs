@@ -2,14 +2,14 @@
 //!
 //! Theory: a skyline with profiles. What is packed is kept as its upper outline, one height a column; a shape, given by its
 //! lower and upper outline, goes where its far edge comes to lie lowest, largest first, in the best of four turns. What that
-//! shuts off from above is kept as [`Gaps`] for smaller shapes. Based on: Nöll and Stricker, "Efficient Packing of
+//! shuts off from above is kept as [`FreeSpace`] for smaller shapes. Based on: Nöll and Stricker, "Efficient Packing of
 //! Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011, and Jylänki, "A Thousand Ways to Pack the Bin",
 //! 2010, section 4.
 //!
 //! Practice: most positions are refused by one column that stands too high, and so are all others that would have the
 //! shape over that column: the search jumps past it. Small shapes are packed as their boxes.
 
-use super::gaps::Gaps;
+use super::free_space::FreeSpace;
 use super::outline::Outline;
 
 /// Something to pack, in texels.
@@ -25,7 +25,7 @@ pub(super) struct Shape {
 
 /// Where a shape went.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Spot {
+pub(super) struct PackedPosition {
     pub x: u32,
     pub y: u32,
     /// Quarter turns, from +x towards +y.
@@ -35,7 +35,7 @@ pub(super) struct Spot {
 /// All of the shapes, and the size of box that they need.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Packed {
-    pub spots: Vec<Spot>,
+    pub positions: Vec<PackedPosition>,
     pub width: u32,
     pub height: u32,
 }
@@ -63,13 +63,13 @@ impl Shape {
 }
 
 /// A shape turned: per column, the first row it takes and the first it does not.
-struct Turned {
+struct TurnedShape {
     width: u32,
     height: u32,
     columns: Option<Vec<(u16, u16)>>,
 }
 
-impl Turned {
+impl TurnedShape {
     fn new(shape: &Shape, turns: u8) -> Self {
         let (width, height) =
             if turns.is_multiple_of(2) { (shape.width, shape.height) } else { (shape.height, shape.width) };
@@ -109,7 +109,7 @@ impl Turned {
     }
 
     /// Puts the shape on the skyline; what lies free below it goes to the gaps.
-    fn raise(&self, skyline: &mut [u32], gaps: &mut Gaps, x: u32, y: u32) {
+    fn raise(&self, skyline: &mut [u32], gaps: &mut FreeSpace, x: u32, y: u32) {
         let under = &mut skyline[x as usize..][..self.width as usize];
         let free: Vec<_> = (0..).zip(under.iter()).map(|(column, &high)| (high, y + self.bottom(column))).collect();
         gaps.add_region(x, &free);
@@ -127,27 +127,27 @@ pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> 
         (std::cmp::Reverse((shape.width.max(shape.height), shape.width.min(shape.height))), i)
     });
     let mut skyline = vec![0; width as usize];
-    let mut gaps = Gaps::new(shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1));
-    let mut packed = Packed { spots: vec![Spot::default(); shapes.len()], ..Packed::default() };
+    let mut gaps = FreeSpace::new(shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1));
+    let mut packed = Packed { positions: vec![PackedPosition::default(); shapes.len()], ..Packed::default() };
     for index in order {
         let Shape { width: across, height: along, may_turn, .. } = shapes[index];
         if let Some((x, y, is_turned)) = gaps.take(across, along, may_turn) {
-            packed.spots[index] = Spot { x, y, turns: u8::from(is_turned) };
+            packed.positions[index] = PackedPosition { x, y, turns: u8::from(is_turned) };
             continue;
         }
-        let mut best: Option<(Spot, Turned)> = None;
+        let mut best: Option<(PackedPosition, TurnedShape)> = None;
         for turns in shapes[index].turns() {
-            let turned = Turned::new(&shapes[index], turns);
-            let limit = best.as_ref().map_or(height + 1, |(spot, best)| spot.y + best.height);
+            let turned = TurnedShape::new(&shapes[index], turns);
+            let limit = best.as_ref().map_or(height + 1, |(position, best)| position.y + best.height);
             if let Some((x, y)) = turned.lowest(&skyline, limit) {
-                best = Some((Spot { x, y, turns }, turned));
+                best = Some((PackedPosition { x, y, turns }, turned));
             }
         }
-        let (spot, turned) = best?;
-        turned.raise(&mut skyline, &mut gaps, spot.x, spot.y);
-        packed.spots[index] = spot;
-        packed.width = packed.width.max(spot.x + turned.width);
-        packed.height = packed.height.max(spot.y + turned.height);
+        let (position, turned) = best?;
+        turned.raise(&mut skyline, &mut gaps, position.x, position.y);
+        packed.positions[index] = position;
+        packed.width = packed.width.max(position.x + turned.width);
+        packed.height = packed.height.max(position.y + turned.height);
     }
     Some(packed)
 }
@@ -170,7 +170,7 @@ mod tests {
         let shapes = scattered(700);
         let packed = pack(&shapes, 500, 10_000).unwrap();
         let mut taken = vec![false; 500 * packed.height as usize];
-        for (r, s) in shapes.iter().zip(&packed.spots) {
+        for (r, s) in shapes.iter().zip(&packed.positions) {
             assert!(r.may_turn || s.turns == 0);
             let (w, h) = if s.turns == 1 { (r.height, r.width) } else { (r.width, r.height) };
             for y in s.y..s.y + h {

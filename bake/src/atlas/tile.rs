@@ -7,7 +7,7 @@
 //! cheaper to show the small ones larger than they need. [`reference_scale`] weighs the two.
 
 use super::outline::Outline;
-use super::strip::{self, Packed, Shape, Spot};
+use super::strip::{self, Packed, PackedPosition, Shape};
 use super::unwrap::Charts;
 use glam::DVec2;
 
@@ -61,7 +61,7 @@ impl ChartBox {
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     pub boxes: Vec<ChartBox>,
-    pub spots: Vec<Spot>,
+    pub positions: Vec<PackedPosition>,
     /// Texels within the outer padding, at the reference scale.
     pub inner: DVec2,
 }
@@ -74,14 +74,14 @@ impl Tile {
         let packed = pack_compactly(&shapes);
         let pad = f64::from(2 * padding);
         let inner = DVec2::new(f64::from(packed.width) - pad, f64::from(packed.height) - pad).max(DVec2::ONE);
-        Self { boxes, spots: packed.spots, inner }
+        Self { boxes, positions: packed.positions, inner }
     }
 
     /// Where a chart's point lies, in [0, 1] of the tile's inner box.
     pub fn uv(&self, chart: usize, point: DVec2) -> DVec2 {
-        let spot = self.spots[chart];
-        let corner = DVec2::new(f64::from(spot.x), f64::from(spot.y));
-        ((corner + self.boxes[chart].texel(point, spot.turns)) / self.inner).clamp(DVec2::ZERO, DVec2::ONE)
+        let position = self.positions[chart];
+        let corner = DVec2::new(f64::from(position.x), f64::from(position.y));
+        ((corner + self.boxes[chart].texel(point, position.turns)) / self.inner).clamp(DVec2::ZERO, DVec2::ONE)
     }
 }
 

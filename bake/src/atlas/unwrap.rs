@@ -26,9 +26,9 @@ const HEIGHT_FIELD_COS: f64 = 0.2;
 const CHART_TRIANGLES: usize = 4_000;
 
 /// Marks a vertex that no chart has yet.
-const STRAY: u32 = u32::MAX;
+const NO_CHART: u32 = u32::MAX;
 /// About how many pairs may be compared to find homes for stray vertices.
-const STRAY_WORK: usize = 100_000_000;
+const NEAREST_WORK: usize = 100_000_000;
 
 /// A mesh in charts, each flattened in its own frame.
 #[derive(Debug, Clone, Default)]
@@ -173,7 +173,7 @@ fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
     let mut charts = Charts { indices: output.indices.clone(), ..Charts::default() };
     for vertex in &output.vertices {
         let point = DVec2::from(vertex.uv.map(f64::from)) * extent;
-        let chart = vertex.chart.map_or(STRAY, |c| c - first);
+        let chart = vertex.chart.map_or(NO_CHART, |c| c - first);
         charts.vertices.push(vertex.xref);
         charts.points.push(point);
         charts.chart_of.push(chart);
@@ -182,7 +182,7 @@ fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
             high[chart as usize] = high[chart as usize].max(point);
         }
     }
-    settle_strays(mesh, &mut charts);
+    place_uncharted(mesh, &mut charts);
     for (point, &chart) in charts.points.iter_mut().zip(&charts.chart_of) {
         *point -= low[chart as usize];
     }
@@ -192,23 +192,23 @@ fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
 
 /// Vertices of triangles without area and without charted neighbours go to where the nearest charted vertex lies, a whole
 /// triangle to one point, so that it does not stretch across charts.
-fn settle_strays(mesh: &Mesh, charts: &mut Charts) {
+fn place_uncharted(mesh: &Mesh, charts: &mut Charts) {
     let (charted, strays): (Vec<u32>, Vec<u32>) =
-        (0..charts.vertices.len() as u32).partition(|&v| charts.chart_of[v as usize] != STRAY);
-    let stride = (strays.len() * charted.len() / STRAY_WORK).max(1);
+        (0..charts.vertices.len() as u32).partition(|&v| charts.chart_of[v as usize] != NO_CHART);
+    let stride = (strays.len() * charted.len() / NEAREST_WORK).max(1);
     let place = |charts: &Charts, v: u32| mesh.positions[charts.vertices[v as usize] as usize].as_dvec3();
     for corner in (0..charts.indices.len()).step_by(3) {
         let triangle = [0, 1, 2].map(|k| charts.indices[corner + k]);
-        if triangle.iter().all(|&v| charts.chart_of[v as usize] != STRAY) {
+        if triangle.iter().all(|&v| charts.chart_of[v as usize] != NO_CHART) {
             continue;
         }
-        let settled = triangle.iter().copied().find(|&v| charts.chart_of[v as usize] != STRAY);
+        let settled = triangle.iter().copied().find(|&v| charts.chart_of[v as usize] != NO_CHART);
         let from = place(charts, triangle[0]);
         let distance = |v: &u32| place(charts, *v).distance_squared(from);
         let nearest = || charted.iter().copied().step_by(stride).min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let Some(target) = settled.or_else(nearest) else { return };
         for v in triangle.map(|v| v as usize) {
-            if charts.chart_of[v] == STRAY {
+            if charts.chart_of[v] == NO_CHART {
                 charts.points[v] = charts.points[target as usize];
                 charts.chart_of[v] = charts.chart_of[target as usize];
             }

@@ -131,7 +131,8 @@ impl FinerSamples {
             return Self { samples: Vec::new(), first: Vec::new() };
         }
         let width = baker.atlas.pages[page].width;
-        let mut samples = atlas::sample_finer(baker.scene, baker.geometry, baker.atlas, page as u32, finer).samples;
+        let mut samples =
+            atlas::sample_page_supersampled(baker.scene, baker.geometry, baker.atlas, page as u32, finer).samples;
         let texel_of = |sample: &Sample| {
             let (x, y) = (sample.texel % (width * finer), sample.texel / (width * finer));
             y / finer * width + x / finer

@@ -83,7 +83,7 @@ pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenSc
         InstanceEntry {
             node,
             primitive,
-            atlas: (material.alpha != Alpha::Air).then_some(placement.page),
+            atlas: (material.alpha != Alpha::Invisible).then_some(placement.page),
             uv_set: 1,
             // Coordinates that are the page's own already are not moved again.
             uv_scale: if written.has_page_uvs { [1.0; 2] } else { placement.scale.to_array() },
@@ -91,7 +91,7 @@ pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenSc
             double_sided: material.is_double_sided,
         }
     };
-    written.places.iter().enumerate().map(entry).collect()
+    written.primitives_of_instances.iter().enumerate().map(entry).collect()
 }
 
 /// Most layers that may be asked for.

@@ -12,7 +12,7 @@ pub(super) fn leave_out(scene: &mut Scene, names: &[String]) -> Result<(), BakeE
         let mut found = false;
         for material in scene.materials.iter_mut().filter(|m| m.name.as_ref() == Some(name)) {
             // No alpha, so that the set's own scene says the same to whoever reads it.
-            (material.alpha, material.base_color.w, found) = (Alpha::Air, 0.0, true);
+            (material.alpha, material.base_color.w, found) = (Alpha::Invisible, 0.0, true);
         }
         if !found {
             let known: Vec<&str> = scene.materials.iter().filter_map(|m| m.name.as_deref()).take(20).collect();
@@ -45,7 +45,7 @@ mod tests {
         let shell = crate::scene::Material { name: Some("shell".into()), ..opaque() };
         let mut scene = SceneBuilder::new().soup_of(&block(Vec3::ZERO, Vec3::ONE), shell).build();
         leave_out(&mut scene, &["shell".into()]).unwrap();
-        assert_eq!(scene.material(0).alpha, Alpha::Air);
+        assert_eq!(scene.material(0).alpha, Alpha::Invisible);
         let message = leave_out(&mut scene, &["hull".into()]).unwrap_err().to_string();
         assert!(message.contains("hull") && message.contains("shell"), "{message}");
     }

@@ -114,7 +114,7 @@ impl<'a> PageBaker<'a> {
         self.stats.texels += samples.samples.len() as u64;
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
         self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
-        let order = atlas::by_tiles(&samples, size);
+        let order = atlas::in_tile_order(&samples, size);
         let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
         let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, &samples, &order)).transpose()?;

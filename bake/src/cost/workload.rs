@@ -183,7 +183,7 @@ impl Workload {
 fn neighbours(scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> Vec<Sample> {
     let of_page = |(page, &size)| {
         let samples = atlas::sample_page(scene, geometry, atlas, page as u32);
-        let order = atlas::by_tiles(&samples, size);
+        let order = atlas::in_tile_order(&samples, size);
         order.into_iter().map(move |i| samples.samples[i as usize])
     };
     atlas.pages.iter().enumerate().flat_map(of_page).collect()

@@ -9,7 +9,7 @@ use crate::maps::{AmbientMaps, AmbientSide, Bits, in_8_bits};
 use crate::settings::AmbientRequest;
 use std::io::{Result, Seek, Write};
 
-type Written<T> = std::result::Result<T, WriteError>;
+type WriteResult<T> = std::result::Result<T, WriteError>;
 
 impl SetWriter {
     /// Writes the ambient light of page `index` and adds it to what the manifest says of the page.
@@ -20,7 +20,7 @@ impl SetWriter {
         maps: &AmbientMaps,
         request: &AmbientRequest,
         entry: AtlasEntry,
-    ) -> Written<AtlasEntry> {
+    ) -> WriteResult<AtlasEntry> {
         let size = (entry.width, entry.height);
         let ao = format!("page{index}_ao.png");
         self.write_file(&ao, |file| write_occlusion(maps, size, request.bits, file))?;
@@ -38,13 +38,13 @@ impl SetWriter {
         Ok(AtlasEntry { ao: Some(ao), bent, bent_back, sky, ambient_exr, ..entry })
     }
 
-    fn write_bent(&mut self, name: String, side: &AmbientSide, size: (u32, u32)) -> Written<Option<String>> {
+    fn write_bent(&mut self, name: String, side: &AmbientSide, size: (u32, u32)) -> WriteResult<Option<String>> {
         let Some(bent) = &side.bent else { return Ok(None) };
         self.write_file(&name, |file| write_rgb16(bent.iter().copied(), size, file))?;
         Ok(Some(name))
     }
 
-    fn write_sky(&mut self, stem: &str, side: &AmbientSide, size: (u32, u32)) -> Written<Option<[String; 3]>> {
+    fn write_sky(&mut self, stem: &str, side: &AmbientSide, size: (u32, u32)) -> WriteResult<Option<[String; 3]>> {
         let Some(sky) = &side.sky else { return Ok(None) };
         let names = [0, 1, 2].map(|k| format!("{stem}{k}.png"));
         for (k, name) in names.iter().enumerate() {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 /// The lists that materials fill.
 #[derive(Default)]
-pub(super) struct Written {
+pub(super) struct WrittenMaterials {
     pub materials: Vec<Value>,
     pub textures: Vec<Value>,
     pub samplers: Vec<Value>,
@@ -16,9 +16,9 @@ pub(super) struct Written {
     pub extensions: Vec<Value>,
 }
 
-pub(super) fn write(scene: &Scene, binary: &mut Binary) -> Written {
+pub(super) fn write(scene: &Scene, binary: &mut Binary) -> WrittenMaterials {
     let images = scene.images.iter().map(|picture| image(picture, binary)).collect();
-    let mut written = Written { images, ..Written::default() };
+    let mut written = WrittenMaterials { images, ..WrittenMaterials::default() };
     for material in &scene.materials {
         let value = written.material(material);
         written.materials.push(value);
@@ -40,7 +40,7 @@ pub(super) fn index_of(list: &mut Vec<Value>, value: Value) -> usize {
     })
 }
 
-impl Written {
+impl WrittenMaterials {
     fn material(&mut self, material: &Material) -> Value {
         let mut pbr = json!({ "baseColorFactor": material.base_color.to_array(), "metallicFactor": 0.0 });
         if let Some(texture) = &material.base_color_texture {
@@ -52,11 +52,11 @@ impl Written {
         }
         match material.alpha {
             Alpha::Opaque => {}
-            Alpha::Cut { cutoff } => {
+            Alpha::Mask { cutoff } => {
                 written["alphaMode"] = json!("MASK");
                 written["alphaCutoff"] = json!(cutoff);
             }
-            Alpha::Air => written["alphaMode"] = json!("BLEND"),
+            Alpha::Invisible => written["alphaMode"] = json!("BLEND"),
         }
         let mut extensions = Map::new();
         self.add_emission(material, &mut written, &mut extensions);

@@ -14,42 +14,42 @@ use std::collections::BTreeMap;
 /// Which of the scene's meshes form the primitives of which glTF mesh.
 pub(super) struct Groups {
     /// For each glTF mesh, its primitives.
-    pub meshes: Vec<Vec<Primitive>>,
+    pub meshes: Vec<Vec<MeshPrimitive>>,
     /// For each node, its glTF mesh.
     pub mesh_of_node: Vec<Option<usize>>,
     /// For each instance, its node and primitive.
-    pub places: Vec<(usize, usize)>,
+    pub primitives_of_instances: Vec<(usize, usize)>,
 }
 
 /// A primitive: one of [`Scene::meshes`] and, where it is not the same for all of its instances, which of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Primitive {
+pub(super) struct MeshPrimitive {
     mesh: usize,
     instance: Option<usize>,
 }
 
 /// What instances show beside their mesh.
-pub(super) enum Looks<'a> {
+pub(super) enum PerInstance<'a> {
     /// Nothing: their coordinates are the layout's, their material the mesh's.
-    AsTheyAre,
+    Nothing,
     /// Occlusion, on page coordinates, with the material of every instance.
-    Occluded(Occlusion<'a>, Vec<usize>),
+    Occlusion(Occlusion<'a>, Vec<usize>),
     /// Openness of every instance's vertices, and no coordinates of a bake.
-    AtVertices(VertexAttribute, &'a [Vec<f32>]),
+    VertexVisibility(VertexAttribute, &'a [Vec<f32>]),
 }
 
 impl Groups {
     /// `by_instance`: no primitive is shared between instances.
     pub fn new(scene: &Scene, by_instance: bool) -> Self {
         let mut drawn = vec![Vec::new(); scene.nodes.len()];
-        let mut places = Vec::with_capacity(scene.instances.len());
+        let mut primitives_of_instances = Vec::with_capacity(scene.instances.len());
         for (index, instance) in scene.instances.iter().enumerate() {
-            places.push((instance.node, drawn[instance.node].len()));
-            drawn[instance.node].push(Primitive { mesh: instance.mesh, instance: by_instance.then_some(index) });
+            primitives_of_instances.push((instance.node, drawn[instance.node].len()));
+            drawn[instance.node].push(MeshPrimitive { mesh: instance.mesh, instance: by_instance.then_some(index) });
         }
         let mut meshes = Vec::new();
         let mut known = BTreeMap::new();
-        let mut group = |primitives: Vec<Primitive>| {
+        let mut group = |primitives: Vec<MeshPrimitive>| {
             let next = meshes.len();
             *known.entry(primitives).or_insert_with_key(|primitives| {
                 meshes.push(primitives.clone());
@@ -57,7 +57,7 @@ impl Groups {
             })
         };
         let mesh_of_node = drawn.into_iter().map(|list| (!list.is_empty()).then(|| group(list))).collect();
-        Self { meshes, mesh_of_node, places }
+        Self { meshes, mesh_of_node, primitives_of_instances }
     }
 }
 
@@ -65,25 +65,25 @@ pub(super) fn write(
     scene: &Scene,
     layouts: &[Layout],
     groups: &Groups,
-    looks: &Looks,
+    per_instance: &PerInstance,
     binary: &mut Binary,
 ) -> Vec<Value> {
     let mut shared: Vec<Option<Shared>> = scene.meshes.iter().map(|_| None).collect();
-    let mut write_group = |group: &Vec<Primitive>| {
+    let mut write_group = |group: &Vec<MeshPrimitive>| {
         let mut written = Map::new();
         if let Some(name) = group.first().and_then(|first| scene.meshes[first.mesh].name.as_ref()) {
             written.insert("name".into(), json!(name));
         }
-        let mut one = |&Primitive { mesh, instance }: &Primitive| {
+        let mut one = |&MeshPrimitive { mesh, instance }: &MeshPrimitive| {
             let layout = &layouts[mesh];
             let shared = shared[mesh].get_or_insert_with(|| Shared::new(scene, mesh, layout, binary));
             let material = scene.meshes[mesh].material;
             let mut add_uvs = |uvs: &[Vec2]| binary.add_vectors(uvs.iter().map(Vec2::to_array));
-            match (looks, instance) {
-                (Looks::Occluded(occlusion, materials), Some(instance)) => {
+            match (per_instance, instance) {
+                (PerInstance::Occlusion(occlusion, materials), Some(instance)) => {
                     shared.primitive(add_uvs(&occlusion.page_uvs(scene, instance)), materials[instance])
                 }
-                (Looks::AtVertices(attribute, open), Some(instance)) => {
+                (PerInstance::VertexVisibility(attribute, open), Some(instance)) => {
                     let accessor = add_ambient_visibility(&scene.meshes[mesh], *attribute, &open[instance], binary);
                     shared.with(attribute.name(), accessor, material)
                 }
@@ -124,14 +124,14 @@ impl Shared {
         if let Some(normals) = &mesh.normals {
             add("NORMAL", binary.add_vectors(source().map(|v| normals[v].to_array())));
         }
-        match picture_texcoords(scene, mesh) {
-            Picture::Set(texcoords) => {
+        match first_texcoords(scene, mesh) {
+            FirstTexcoords::Set(texcoords) => {
                 add("TEXCOORD_0", binary.add_vectors(source().map(|v| texcoords[v].to_array())));
             }
-            Picture::Origin => {
+            FirstTexcoords::Origin => {
                 add("TEXCOORD_0", binary.add_vectors(source().map(|_| [0.0; 2])));
             }
-            Picture::None => {}
+            FirstTexcoords::None => {}
         }
         if let Some(colors) = &mesh.colors {
             add("COLOR_0", binary.add_vectors(source().map(|v| colors[v].to_array())));
@@ -156,7 +156,7 @@ impl Shared {
 }
 
 /// What `TEXCOORD_0` holds.
-enum Picture<'a> {
+enum FirstTexcoords<'a> {
     /// The set that the base colour uses, or the file's first.
     Set(&'a [Vec2]),
     /// The base colour has a texture and the mesh has no coordinates for it: all of it shows one texel.
@@ -165,12 +165,12 @@ enum Picture<'a> {
     None,
 }
 
-fn picture_texcoords<'a>(scene: &Scene, mesh: &'a Mesh) -> Picture<'a> {
+fn first_texcoords<'a>(scene: &Scene, mesh: &'a Mesh) -> FirstTexcoords<'a> {
     let texture = &scene.materials[mesh.material].base_color_texture;
     let set = texture.as_ref().map_or(0, |texture| texture.texcoord);
     match (&mesh.texcoords[set], texture) {
-        (Some(texcoords), _) => Picture::Set(texcoords),
-        (None, Some(_)) => Picture::Origin,
-        (None, None) => Picture::None,
+        (Some(texcoords), _) => FirstTexcoords::Set(texcoords),
+        (None, Some(_)) => FirstTexcoords::Origin,
+        (None, None) => FirstTexcoords::None,
     }
 }

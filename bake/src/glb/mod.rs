@@ -19,8 +19,8 @@ pub use occlusion::{Occlusion, OcclusionPage};
 
 use crate::{atlas::Layout, scene::Scene, settings::VertexAttribute};
 use binary::Binary;
-use materials::Written;
-use meshes::{Groups, Looks};
+use materials::WrittenMaterials;
+use meshes::{Groups, PerInstance};
 use serde_json::{Map, Value, json};
 
 /// A scene in GLB's form, and where its instances stand in it.
@@ -29,7 +29,7 @@ pub struct WrittenScene {
     /// The file.
     pub bytes: Vec<u8>,
     /// For each of [`Scene::instances`], its node and the index of its primitive in that node's mesh.
-    pub places: Vec<(usize, usize)>,
+    pub primitives_of_instances: Vec<(usize, usize)>,
     /// Whether `TEXCOORD_1` holds page coordinates, not those of layouts.
     pub has_page_uvs: bool,
 }
@@ -51,12 +51,16 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
     let mut binary = Binary::default();
     let groups = Groups::new(scene, occlusion.is_some());
     let mut materials = materials::write(scene, &mut binary);
-    let looks = match &occlusion {
-        None => Looks::AsTheyAre,
-        Some(occlusion) => Looks::Occluded(*occlusion, occlusion.add_to(scene, &mut materials, &mut binary)),
+    let per_instance = match &occlusion {
+        None => PerInstance::Nothing,
+        Some(occlusion) => PerInstance::Occlusion(*occlusion, occlusion.add_to(scene, &mut materials, &mut binary)),
     };
-    let bytes = finish(scene, layouts, &groups, &looks, materials, binary)?;
-    Ok(WrittenScene { bytes, places: groups.places, has_page_uvs: occlusion.is_some() })
+    let bytes = finish(scene, layouts, &groups, &per_instance, materials, binary)?;
+    Ok(WrittenScene {
+        bytes,
+        primitives_of_instances: groups.primitives_of_instances,
+        has_page_uvs: occlusion.is_some(),
+    })
 }
 
 /// Writes a scene with openness at its vertices (for each instance, that of its mesh's vertices) and no baked coordinates.
@@ -69,18 +73,18 @@ pub fn write_vertices(scene: &Scene, attribute: VertexAttribute, open: &[Vec<f32
     let groups = Groups::new(scene, true);
     let materials = materials::write(scene, &mut binary);
     let layouts: Vec<Layout> = scene.meshes.iter().map(Layout::of_mesh).collect();
-    finish(scene, &layouts, &groups, &Looks::AtVertices(attribute, open), materials, binary)
+    finish(scene, &layouts, &groups, &PerInstance::VertexVisibility(attribute, open), materials, binary)
 }
 
 fn finish(
     scene: &Scene,
     layouts: &[Layout],
     groups: &Groups,
-    looks: &Looks,
-    materials: Written,
+    per_instance: &PerInstance,
+    materials: WrittenMaterials,
     mut binary: Binary,
 ) -> Result<Vec<u8>, GlbTooLarge> {
-    let meshes = meshes::write(scene, layouts, groups, looks, &mut binary);
+    let meshes = meshes::write(scene, layouts, groups, per_instance, &mut binary);
     let mut root = Map::new();
     root.insert("asset".into(), json!({ "version": "2.0", "generator": GENERATOR }));
     root.insert("scene".into(), json!(0));

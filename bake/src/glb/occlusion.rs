@@ -4,7 +4,7 @@
 //! coordinates of its own, the page's; positions, normals and indices stay shared.
 
 use super::binary::Binary;
-use super::materials::{Written, index_of};
+use super::materials::{WrittenMaterials, index_of};
 use crate::atlas::{Atlas, PageSize};
 use crate::maps::{AmbientMaps, in_8_bits};
 use crate::scene::Scene;
@@ -60,7 +60,7 @@ impl Occlusion<'_> {
 
     /// Adds each page's texture to the materials of what lies on it; a material on several pages becomes several. Gives the
     /// material of every instance.
-    pub(super) fn add_to(&self, scene: &Scene, written: &mut Written, binary: &mut Binary) -> Vec<usize> {
+    pub(super) fn add_to(&self, scene: &Scene, written: &mut WrittenMaterials, binary: &mut Binary) -> Vec<usize> {
         // No smaller levels: they would blend charts that lie side by side.
         let sampler = json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 });
         let sampler = index_of(&mut written.samplers, sampler);

@@ -37,17 +37,17 @@ pub enum LampFileError {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct LampPathFile {
     radius_m: Option<f64>,
     duration_min: Option<f64>,
     #[serde(default)]
-    keys: Vec<Key>,
+    keys: Vec<LampPathKey>,
     angular_radius_deg: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Key {
+struct LampPathKey {
     t: Option<f64>,
     position: Option<[f64; 3]>,
     direction: Option<IgnoredAny>,
@@ -65,7 +65,7 @@ pub fn is_lamp(json: &str) -> bool {
 
 /// Reads the path of a lamp, world space.
 pub fn parse_lamp(json: &str) -> Result<LampPath, LampFileError> {
-    let file: File = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
+    let file: LampPathFile = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.angular_radius_deg.is_some() {
         return Err(LampFileError::OfSun("'angular_radius_deg', which a sun has: give a lamp 'radius_m'"));
     }
@@ -77,7 +77,7 @@ pub fn parse_lamp(json: &str) -> Result<LampPath, LampFileError> {
     Ok(LampPath::new(keys?, radius_m, duration_min)?)
 }
 
-fn lamp_key(index: usize, key: &Key, t: f64) -> Result<LampKey, KeyError> {
+fn lamp_key(index: usize, key: &LampPathKey, t: f64) -> Result<LampKey, KeyError> {
     let wrong = |problem: &str| KeyError::Key { index, problem: problem.to_owned() };
     if key.direction.is_some() || key.azimuth_deg.is_some() || key.elevation_deg.is_some() {
         return Err(wrong("has a direction, which a lamp has not: give every key a 'position'"));

@@ -200,7 +200,7 @@ pub(super) fn of_surfaces(scene: &Scene) -> [Decision; 2] {
 }
 
 fn alpha_cut(scene: &Scene) -> Decision {
-    let is_cut = |m: &Material| matches!(m.alpha, Alpha::Cut { .. });
+    let is_cut = |m: &Material| matches!(m.alpha, Alpha::Mask { .. });
     let [surfaces, triangles] = count(scene, is_cut);
     Decision {
         effect: Effect::AlphaCut,
@@ -219,7 +219,7 @@ fn alpha_cut(scene: &Scene) -> Decision {
 }
 
 fn double_sided(scene: &Scene) -> Decision {
-    let [surfaces, triangles] = count(scene, |m| m.is_double_sided && m.alpha != Alpha::Air);
+    let [surfaces, triangles] = count(scene, |m| m.is_double_sided && m.alpha != Alpha::Invisible);
     Decision {
         effect: Effect::DoubleSided,
         is_on: surfaces > 0,

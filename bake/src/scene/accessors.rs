@@ -6,7 +6,7 @@
 use super::{
     LoadError,
     document::{self, Document, place},
-    limits::Budget,
+    limits::MemoryBudget,
     resources::Buffers,
 };
 
@@ -15,7 +15,7 @@ use super::{
 pub(super) struct Reader<'a> {
     pub doc: &'a Document,
     pub buffers: &'a Buffers<'a>,
-    pub budget: &'a Budget,
+    pub budget: &'a MemoryBudget,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -128,21 +128,21 @@ impl<'a> Reader<'a> {
 
     /// How many numbers an element has.
     pub fn lanes(&self, index: usize) -> Result<usize, LoadError> {
-        let accessor: document::Accessor = self.doc.get(index)?;
+        let accessor: document::JsonAccessor = self.doc.get(index)?;
         lanes_of(&accessor.shape).ok_or_else(|| wrong(index, format!("unknown type {}", accessor.shape)))
     }
 
     /// Whether the accessor has bytes of its own, rather than being all zero.
     pub fn has_data(&self, index: usize) -> bool {
-        let accessor = self.doc.get::<document::Accessor>(index);
+        let accessor = self.doc.get::<document::JsonAccessor>(index);
         accessor.is_ok_and(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
     }
 
-    fn typed<const N: usize>(&self, index: usize) -> Result<(document::Accessor, Component), LoadError> {
-        let accessor: document::Accessor = self.doc.get(index)?;
+    fn typed<const N: usize>(&self, index: usize) -> Result<(document::JsonAccessor, Component), LoadError> {
+        let accessor: document::JsonAccessor = self.doc.get(index)?;
         let component = component(index, accessor.component_type)?;
         if accessor.count >= u64::from(u32::MAX) {
-            self.budget.take(accessor.count, 4 * N as u64, || place::<document::Accessor>(index))?;
+            self.budget.take(accessor.count, 4 * N as u64, || place::<document::JsonAccessor>(index))?;
             return Err(wrong(index, format!("it has {} elements, more than an index can name", accessor.count)));
         }
         match self.lanes(index)? == N {
@@ -154,11 +154,11 @@ impl<'a> Reader<'a> {
     fn values<T: Copy + Default, const N: usize>(
         &self,
         index: usize,
-        accessor: &document::Accessor,
+        accessor: &document::JsonAccessor,
         component: Component,
         convert: impl Fn(&[u8]) -> T,
     ) -> Result<Vec<[T; N]>, LoadError> {
-        let what = || format!("{} with {} elements", place::<document::Accessor>(index), accessor.count);
+        let what = || format!("{} with {} elements", place::<document::JsonAccessor>(index), accessor.count);
         let (width, size) = (component.width(), component.width() * N);
         let take = |e: &Elements| e.iter().map(|b| element(b, width, &convert)).collect();
         let mut values: Vec<[T; N]> = match accessor.buffer_view {
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         if needed > bytes.len() as u64 {
             let problem =
                 format!("its {count} elements need {needed} bytes of bufferViews[{view}], which has {}", bytes.len());
-            return Err(LoadError::structure(place::<document::Accessor>(index), problem));
+            return Err(LoadError::structure(place::<document::JsonAccessor>(index), problem));
         }
         let bytes = bytes.get(offset as usize..).unwrap_or(&[]);
         Ok(Elements { bytes, stride: stride as usize, size, count: count as usize })
@@ -242,5 +242,5 @@ fn component(index: usize, code: u64) -> Result<Component, LoadError> {
 }
 
 fn wrong(index: usize, problem: String) -> LoadError {
-    LoadError::structure(place::<document::Accessor>(index), problem)
+    LoadError::structure(place::<document::JsonAccessor>(index), problem)
 }

@@ -66,8 +66,8 @@ impl Scene {
         let material = self.material(instance);
         match material.alpha {
             Alpha::Opaque => true,
-            Alpha::Air => false,
-            Alpha::Cut { cutoff } => {
+            Alpha::Invisible => false,
+            Alpha::Mask { cutoff } => {
                 let mesh = &self.meshes[self.instances[instance].mesh];
                 self.alpha(mesh, material, triangle, barycentric) >= cutoff
             }

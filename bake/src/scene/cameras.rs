@@ -3,19 +3,19 @@
 use super::{
     Camera,
     document::{self, Document, place},
-    limits::Log,
-    nodes::Tree,
+    limits::WarningLog,
+    nodes::NodeTree,
 };
 use glam::{DMat4, DVec3};
 use serde_json::Value;
 
 /// Perspective cameras under drawn nodes. One that cannot be used is left out with a warning: it only frames pictures.
-pub(super) fn read(doc: &Document, tree: &Tree, centre_m: DVec3, log: &mut Log) -> Vec<Camera> {
+pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<Camera> {
     let mut cameras = Vec::new();
     for (node, (placed, &index)) in tree.nodes.iter().zip(&tree.file_index).enumerate() {
         let Some(camera) = tree.file.get(index).and_then(|file| file.camera) else { continue };
-        let place = place::<document::Camera>(camera);
-        let (camera, bake_from_camera) = match doc.get::<document::Camera>(camera) {
+        let place = place::<document::JsonCamera>(camera);
+        let (camera, bake_from_camera) = match doc.get::<document::JsonCamera>(camera) {
             Ok(camera) => (camera, rigid(&placed.world_from_node, centre_m)),
             Err(error) => {
                 log.warn(format!("left out ({error})"), place);
@@ -43,7 +43,7 @@ fn rigid(world_from_node: &DMat4, centre_m: DVec3) -> DMat4 {
 }
 
 /// Towards the first directional light of `KHR_lights_punctual` in node order. A light shines along its node's -Z.
-pub(super) fn sun_direction(doc: &Document, tree: &Tree) -> Option<DVec3> {
+pub(super) fn sun_direction(doc: &Document, tree: &NodeTree) -> Option<DVec3> {
     let lights = doc.root.get("extensions")?.get("KHR_lights_punctual")?.get("lights")?;
     let is_directional = |index: usize| {
         let light =

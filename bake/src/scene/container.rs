@@ -3,7 +3,7 @@
 //! Based on: Khronos Group, *glTF 2.0 Specification*, section 4 (GLB file format). More lenient than it in three ways
 //! that harm nobody: trailing bytes and unknown chunks are passed over, and a byte order mark is skipped.
 
-use super::{LoadError, limits::Budget};
+use super::{LoadError, limits::MemoryBudget};
 use serde_json::Value;
 use std::{fs::File, io::Read, path::Path};
 
@@ -16,7 +16,7 @@ pub(super) struct Container<'a> {
 }
 
 /// Reads a whole regular file, if it fits into the budget.
-pub(super) fn read_file(path: &Path, budget: &Budget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
+pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
     let fail = |cause: std::io::Error| LoadError::read(path, &cause, advice);
     let meta = std::fs::metadata(path).map_err(fail)?;
     if !meta.is_file() {
@@ -31,7 +31,7 @@ pub(super) fn read_file(path: &Path, budget: &Budget, advice: &'static str) -> R
 
 impl<'a> Container<'a> {
     /// Splits the bytes of a file.
-    pub fn parse(path: &Path, bytes: &'a [u8], budget: &Budget) -> Result<Self, LoadError> {
+    pub fn parse(path: &Path, bytes: &'a [u8], budget: &MemoryBudget) -> Result<Self, LoadError> {
         let (json, binary) = match bytes {
             [] => return Err(not_gltf(path, "it is empty")),
             [b'g', b'l', b'T', b'F', rest @ ..] => split_chunks(path, rest)?,

@@ -16,19 +16,19 @@ pub(super) struct Document {
 }
 
 /// Something that lives in one of the lists at the top level.
-pub(super) trait Item: DeserializeOwned {
+pub(super) trait ListItem: DeserializeOwned {
     /// The list's name.
     const LIST: &'static str;
 }
 
 /// `accessors[12]`, for messages.
-pub(super) fn place<T: Item>(index: usize) -> String {
+pub(super) fn place<T: ListItem>(index: usize) -> String {
     format!("{}[{index}]", T::LIST)
 }
 
 impl Document {
     /// Parses item `index` of its list.
-    pub fn get<T: Item>(&self, index: usize) -> Result<T, LoadError> {
+    pub fn get<T: ListItem>(&self, index: usize) -> Result<T, LoadError> {
         let value = self.list(T::LIST).get(index).ok_or_else(|| {
             let count = self.count::<T>();
             LoadError::structure(place::<T>(index), format!("it is referred to, but there are only {count}"))
@@ -38,7 +38,7 @@ impl Document {
     }
 
     /// How many items there are.
-    pub fn count<T: Item>(&self) -> usize {
+    pub fn count<T: ListItem>(&self) -> usize {
         self.list(T::LIST).len()
     }
 
@@ -53,23 +53,23 @@ impl Document {
 }
 
 macro_rules! items {
-    ($($name:ident = $list:literal),* $(,)?) => { $(impl Item for $name { const LIST: &'static str = $list; })* };
+    ($($name:ident = $list:literal),* $(,)?) => { $(impl ListItem for $name { const LIST: &'static str = $list; })* };
 }
 
 items! {
-    Accessor = "accessors", Buffer = "buffers", BufferView = "bufferViews", Camera = "cameras", Image = "images",
-    Material = "materials", Mesh = "meshes", Node = "nodes", Sampler = "samplers", SceneRoots = "scenes",
-    Skin = "skins", Texture = "textures",
+    JsonAccessor = "accessors", JsonBuffer = "buffers", JsonBufferView = "bufferViews", JsonCamera = "cameras", JsonImage = "images",
+    JsonMaterial = "materials", JsonMesh = "meshes", JsonNode = "nodes", JsonSampler = "samplers", JsonSceneRoots = "scenes",
+    JsonSkin = "skins", JsonTexture = "textures",
 }
 
 #[derive(Deserialize)]
-pub(super) struct SceneRoots {
+pub(super) struct JsonSceneRoots {
     pub nodes: Option<Vec<usize>>,
 }
 
 #[derive(Deserialize, Default)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Node {
+pub(super) struct JsonNode {
     pub name: Option<String>,
     pub children: Option<Vec<usize>>,
     pub matrix: Option<[f64; 16]>,
@@ -84,14 +84,14 @@ pub(super) struct Node {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Mesh {
+pub(super) struct JsonMesh {
     pub name: Option<String>,
-    pub primitives: Option<Vec<Primitive>>,
+    pub primitives: Option<Vec<JsonPrimitive>>,
     pub weights: Option<Vec<f32>>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Primitive {
+pub(super) struct JsonPrimitive {
     #[serde(default)]
     pub attributes: BTreeMap<String, usize>,
     pub indices: Option<usize>,
@@ -103,7 +103,7 @@ pub(super) struct Primitive {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Accessor {
+pub(super) struct JsonAccessor {
     pub buffer_view: Option<usize>,
     #[serde(default)]
     pub byte_offset: u64,
@@ -142,7 +142,7 @@ pub(super) struct SparseValues {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct BufferView {
+pub(super) struct JsonBufferView {
     pub buffer: usize,
     #[serde(default)]
     pub byte_offset: u64,
@@ -152,20 +152,20 @@ pub(super) struct BufferView {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Buffer {
+pub(super) struct JsonBuffer {
     pub uri: Option<String>,
 }
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Image {
+pub(super) struct JsonImage {
     pub name: Option<String>,
     pub uri: Option<String>,
     pub buffer_view: Option<usize>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Texture {
+pub(super) struct JsonTexture {
     pub source: Option<usize>,
     pub sampler: Option<usize>,
     pub extensions: Option<BTreeMap<String, Value>>,
@@ -173,14 +173,14 @@ pub(super) struct Texture {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Sampler {
+pub(super) struct JsonSampler {
     pub wrap_s: Option<u64>,
     pub wrap_t: Option<u64>,
 }
 
 #[derive(Deserialize, Default)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Material {
+pub(super) struct JsonMaterial {
     pub name: Option<String>,
     pub pbr_metallic_roughness: Option<MetallicRoughness>,
     pub emissive_factor: Option<[f32; 3]>,
@@ -249,13 +249,13 @@ pub(super) struct TextureTransform {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Skin {
+pub(super) struct JsonSkin {
     pub joints: Vec<usize>,
     pub inverse_bind_matrices: Option<usize>,
 }
 
 #[derive(Deserialize)]
-pub(super) struct Camera {
+pub(super) struct JsonCamera {
     pub name: Option<String>,
     pub perspective: Option<Perspective>,
 }
@@ -265,7 +265,7 @@ pub(super) struct Perspective {
     pub yfov: f64,
 }
 
-impl Material {
+impl JsonMaterial {
     /// Factor and texture of the base colour: metallic-roughness, else the older specular-glossiness model's diffuse colour.
     pub fn base_color(self) -> ([f32; 4], Option<TextureInfo>) {
         let standard = self.pbr_metallic_roughness.unwrap_or_default();

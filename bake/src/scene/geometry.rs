@@ -30,7 +30,7 @@ pub struct SurfaceTriangle {
 }
 
 impl Geometry {
-    /// Places every instance. Surfaces that are [`Alpha::Air`] keep their slots, so that indices stay aligned with the
+    /// Places every instance. Surfaces that are [`Alpha::Invisible`] keep their slots, so that indices stay aligned with the
     /// scene, but see [`Geometry::is_solid`].
     pub fn new(scene: &Scene) -> Self {
         let count = scene.triangle_count();
@@ -79,7 +79,7 @@ impl Geometry {
 
     /// Whether an instance's surface is there at all: its material is not air.
     pub fn is_solid_instance(&self, scene: &Scene, instance: usize) -> bool {
-        scene.material(instance).alpha != Alpha::Air
+        scene.material(instance).alpha != Alpha::Invisible
     }
 
     /// Whether the triangle blocks light at all (its material is not air, its corners do not coincide).

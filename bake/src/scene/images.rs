@@ -6,7 +6,7 @@
 use super::{
     Image, LoadError,
     document::{self, Document, place},
-    limits::Budget,
+    limits::MemoryBudget,
     resources::{Buffers, Fetcher},
 };
 use image::{ImageFormat, ImageReader, Limits};
@@ -36,12 +36,12 @@ pub(super) fn read(
     doc: &Document,
     buffers: &Buffers,
     fetcher: &mut Fetcher,
-    budget: &Budget,
+    budget: &MemoryBudget,
     needed: &BTreeSet<usize>,
 ) -> Result<(Vec<Image>, BTreeMap<usize, Decoded>), LoadError> {
     let mut decoded = BTreeMap::new();
     let mut encoded = Vec::new();
-    let count = doc.count::<document::Image>();
+    let count = doc.count::<document::JsonImage>();
     for file_index in (0..count).chain(needed.range(count..).copied()) {
         let is_needed = needed.contains(&file_index);
         let name = name(doc, file_index);
@@ -74,8 +74,8 @@ pub(super) fn read(
 
 /// `images[3] "bark.png"`.
 fn name(doc: &Document, index: usize) -> String {
-    let place = place::<document::Image>(index);
-    let image: Option<document::Image> = doc.get(index).ok();
+    let place = place::<document::JsonImage>(index);
+    let image: Option<document::JsonImage> = doc.get(index).ok();
     let named = image.and_then(|i| i.name.or(i.uri.filter(|uri| !uri.starts_with("data:"))));
     named.map_or(place.clone(), |name| format!("{place} \"{name}\""))
 }
@@ -87,8 +87,8 @@ fn bytes(
     fetcher: &mut Fetcher,
     is_needed: bool,
 ) -> Result<Vec<u8>, LoadError> {
-    let image: document::Image = doc.get(index)?;
-    let place = place::<document::Image>(index);
+    let image: document::JsonImage = doc.get(index)?;
+    let place = place::<document::JsonImage>(index);
     match (image.uri, image.buffer_view) {
         (Some(uri), _) if is_needed => fetcher.fetch(&place, &uri),
         (Some(uri), _) => fetcher.hash_only(&place, &uri).map(|()| Vec::new()),
@@ -99,7 +99,7 @@ fn bytes(
 }
 
 /// A small file can hold a huge image, so its header is asked first.
-fn charge(bytes: &[u8], name: &str, budget: &Budget) -> Result<(), LoadError> {
+fn charge(bytes: &[u8], name: &str, budget: &MemoryBudget) -> Result<(), LoadError> {
     let Some((width, height)) = format_of(bytes).ok().and_then(|format| dimensions(bytes, format)) else {
         return Ok(());
     };

@@ -23,12 +23,12 @@ impl Default for LoadLimits {
 }
 
 /// What is left of the limit.
-pub(super) struct Budget {
+pub(super) struct MemoryBudget {
     limit: u64,
     used: Cell<u64>,
 }
 
-impl Budget {
+impl MemoryBudget {
     pub fn new(limits: &LoadLimits) -> Self {
         Self { limit: limits.max_memory_bytes, used: Cell::new(0) }
     }
@@ -55,11 +55,11 @@ impl Budget {
 
 /// Warnings, with equal ones gathered into one sentence.
 #[derive(Default)]
-pub(super) struct Log {
+pub(super) struct WarningLog {
     entries: Vec<(String, String, usize)>,
 }
 
-impl Log {
+impl WarningLog {
     /// Notes that `sentence` is true of `place`.
     pub fn warn(&mut self, sentence: impl Into<String>, place: impl Into<String>) {
         let sentence = sentence.into();

@@ -7,10 +7,10 @@ use super::{
     container::Container,
     document::Document,
     images,
-    limits::{Budget, Log},
+    limits::{MemoryBudget, WarningLog},
     materials, nodes,
-    nodes::Tree,
-    primitives::{self, Drawn},
+    nodes::NodeTree,
+    primitives::{self, DrawnMeshes},
     refuse,
     resources::{Buffers, Fetcher},
 };
@@ -28,12 +28,12 @@ use std::{
 /// extension that is not supported, names files outside its folder, needs more memory than `limits` allow, or draws no
 /// triangles. What touches only the look is a warning in [`Scene::warnings`].
 pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
-    let budget = Budget::new(limits);
+    let budget = MemoryBudget::new(limits);
     let bytes = container::read_file(path, &budget, "check the path and its permissions")?;
     let Container { json, binary } = Container::parse(path, &bytes, &budget)?;
     let doc = Document { root: json };
     refuse::check_required(&doc)?;
-    let mut log = Log::default();
+    let mut log = WarningLog::default();
     let mut fetcher = Fetcher::new(path, &bytes, &budget);
     let buffers = Buffers::read(&doc, binary, &mut fetcher)?;
     let tree = nodes::read(&doc, &mut log)?;
@@ -74,7 +74,7 @@ const BYTES_PER_TRIANGLE: u64 = 128;
 /// Coordinates beyond this cannot be multiplied in `f32`, which tracing does.
 const FARTHEST_M: f64 = 1e15;
 
-fn triangle_count(drawn: &Drawn, mesh: usize) -> u64 {
+fn triangle_count(drawn: &DrawnMeshes, mesh: usize) -> u64 {
     drawn.meshes.get(mesh).map_or(0, |mesh| mesh.triangle_count() as u64)
 }
 
@@ -83,7 +83,7 @@ fn source(path: &Path, fetcher: Fetcher) -> Source {
     Source { file_name, sha256: fetcher.into_sha256() }
 }
 
-fn no_triangles(path: &Path, drawn: &Drawn, log: Log) -> LoadError {
+fn no_triangles(path: &Path, drawn: &DrawnMeshes, log: WarningLog) -> LoadError {
     let Dropped { repeated_index, zero_area, non_finite } = drawn.dropped;
     let counted = [(repeated_index, "repeat an index"), (zero_area, "have no area"), (non_finite, "are not finite")];
     let dropped = counted.iter().filter(|(count, _)| *count > 0);
@@ -132,9 +132,9 @@ impl Bounds {
 }
 
 /// Leaves out draws whose coordinates overflow, then meshes without a draw. The bounds of what is left, if anything is.
-fn keep_placeable(drawn: &mut Drawn, tree: &Tree, log: &mut Log) -> Option<Bounds> {
+fn keep_placeable(drawn: &mut DrawnMeshes, tree: &NodeTree, log: &mut WarningLog) -> Option<Bounds> {
     let mut all: Option<Bounds> = None;
-    let Drawn { draws, meshes, .. } = drawn;
+    let DrawnMeshes { draws, meshes, .. } = drawn;
     draws.retain(|&(node, mesh)| {
         let Some((placed, mesh)) = tree.nodes.get(node).zip(meshes.get(mesh)) else { return false };
         let bounds = Bounds::of(mesh, &placed.world_from_node);
@@ -149,7 +149,7 @@ fn keep_placeable(drawn: &mut Drawn, tree: &Tree, log: &mut Log) -> Option<Bound
     all
 }
 
-fn drop_undrawn(drawn: &mut Drawn) {
+fn drop_undrawn(drawn: &mut DrawnMeshes) {
     let kept: BTreeSet<usize> = drawn.draws.iter().map(|&(_, mesh)| mesh).collect();
     let new_from_old: BTreeMap<usize, usize> = kept.iter().enumerate().map(|(new, &old)| (old, new)).collect();
     let mut old = 0..;
@@ -161,7 +161,7 @@ fn drop_undrawn(drawn: &mut Drawn) {
     }
 }
 
-fn instance(tree: &Tree, (node, mesh): (usize, usize), centre_m: DVec3) -> Instance {
+fn instance(tree: &NodeTree, (node, mesh): (usize, usize), centre_m: DVec3) -> Instance {
     let mut bake_from_object = tree.nodes.get(node).map_or(DMat4::IDENTITY, |node| node.world_from_node);
     bake_from_object.w_axis -= centre_m.extend(0.0);
     Instance { node, mesh, bake_from_object, is_mirrored: bake_from_object.determinant() < 0.0 }

@@ -8,8 +8,8 @@ use super::{
     Alpha, LoadError, Material, TextureRef, Wrap,
     document::{self, Document, TextureInfo, TextureTransform, place},
     images::Decoded,
-    limits::Log,
-    primitives::Drawn,
+    limits::WarningLog,
+    primitives::DrawnMeshes,
 };
 use glam::{Mat3, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const BLEND_CUTOFF: f32 = 0.5;
 
 /// A material before its image is decoded: [`TextureRef::image`] is still an index into the file's images.
-pub(super) struct Draft {
+pub(super) struct DraftMaterial {
     place: String,
     material: Material,
     /// `None`: alpha is ignored.
@@ -28,7 +28,11 @@ pub(super) struct Draft {
 }
 
 /// Reads the materials that are drawn, in file order and glTF's default material last, and numbers the meshes' so.
-pub(super) fn read(doc: &Document, drawn: &mut Drawn, log: &mut Log) -> Result<Vec<Draft>, LoadError> {
+pub(super) fn read(
+    doc: &Document,
+    drawn: &mut DrawnMeshes,
+    log: &mut WarningLog,
+) -> Result<Vec<DraftMaterial>, LoadError> {
     let sorted = |file: &Option<usize>| file.unwrap_or(usize::MAX);
     let used: BTreeSet<usize> = drawn.file_material.iter().map(sorted).collect();
     let new_from_file: BTreeMap<usize, usize> = used.iter().enumerate().map(|(new, &file)| (file, new)).collect();
@@ -39,10 +43,10 @@ pub(super) fn read(doc: &Document, drawn: &mut Drawn, log: &mut Log) -> Result<V
 }
 
 /// `index` is `usize::MAX` for the default material.
-fn draft(doc: &Document, index: usize, log: &mut Log) -> Result<Draft, LoadError> {
+fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMaterial, LoadError> {
     let (place, file) = match index {
-        usize::MAX => ("the default material".to_owned(), document::Material::default()),
-        _ => (place::<document::Material>(index), doc.get::<document::Material>(index)?),
+        usize::MAX => ("the default material".to_owned(), document::JsonMaterial::default()),
+        _ => (place::<document::JsonMaterial>(index), doc.get::<document::JsonMaterial>(index)?),
     };
     let place = file.name.as_ref().map_or(place.clone(), |name| format!("{place} \"{name}\""));
     let is_blended = file.alpha_mode.as_deref() == Some("BLEND");
@@ -69,16 +73,16 @@ fn draft(doc: &Document, index: usize, log: &mut Log) -> Result<Draft, LoadError
         Some(Ok(texture)) => material.base_color_texture = Some(texture),
         None => {}
     }
-    Ok(Draft { place, material, cutoff, is_blended })
+    Ok(DraftMaterial { place, material, cutoff, is_blended })
 }
 
 fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String> {
-    let texture: document::Texture = doc.get(info.index).map_err(|error| error.to_string())?;
+    let texture: document::JsonTexture = doc.get(info.index).map_err(|error| error.to_string())?;
     let image = texture.source.ok_or_else(|| match texture.extensions.iter().flatten().next() {
         Some((extension, _)) => format!("it is given by {extension} alone, which sunbake does not read"),
         None => "it names no image".to_owned(),
     })?;
-    let sampler = texture.sampler.and_then(|sampler| doc.get::<document::Sampler>(sampler).ok());
+    let sampler = texture.sampler.and_then(|sampler| doc.get::<document::JsonSampler>(sampler).ok());
     let wrap = |code: Option<u64>| match code {
         Some(33071) => Wrap::Clamp,
         Some(33648) => Wrap::Mirror,
@@ -103,7 +107,7 @@ fn image_from_texcoord(transform: &TextureTransform) -> Mat3 {
 }
 
 /// What a lost image costs: an error where shadows depend on it, a warning where only the look does.
-fn lose_texture(place: &str, image: &str, cause: &str, cuts: bool, log: &mut Log) -> Result<(), LoadError> {
+fn lose_texture(place: &str, image: &str, cause: &str, cuts: bool, log: &mut WarningLog) -> Result<(), LoadError> {
     if cuts {
         return Err(LoadError::AlphaImage { place: place.into(), image: image.into(), cause: cause.into() });
     }
@@ -112,19 +116,19 @@ fn lose_texture(place: &str, image: &str, cause: &str, cuts: bool, log: &mut Log
 }
 
 /// The file's images that base colours need.
-pub(super) fn needed_images(drafts: &[Draft]) -> BTreeSet<usize> {
+pub(super) fn needed_images(drafts: &[DraftMaterial]) -> BTreeSet<usize> {
     drafts.iter().filter_map(|draft| draft.material.base_color_texture).map(|texture| texture.image).collect()
 }
 
 /// Finishes the materials: images by their final index, and what alpha comes to.
 pub(super) fn finish(
-    drafts: Vec<Draft>,
+    drafts: Vec<DraftMaterial>,
     images: &BTreeMap<usize, Decoded>,
-    drawn: &Drawn,
-    log: &mut Log,
+    drawn: &DrawnMeshes,
+    log: &mut WarningLog,
 ) -> Result<Vec<Material>, LoadError> {
     let vertex_alpha = vertex_alpha_ranges(drawn, drafts.len());
-    let finish_one = |(mut draft, vertex): (Draft, Range)| {
+    let finish_one = |(mut draft, vertex): (DraftMaterial, Range)| {
         let mut texture_alpha = Range { low: 1.0, high: 1.0 };
         if let Some(texture) = &mut draft.material.base_color_texture {
             match images.get(&texture.image) {
@@ -163,14 +167,14 @@ impl Range {
     fn cut_at(self, cutoff: f32, is_blended: bool) -> Alpha {
         match (self.low >= cutoff, self.high >= cutoff) {
             (true, _) => Alpha::Opaque,
-            (_, false) if is_blended => Alpha::Air,
-            _ => Alpha::Cut { cutoff },
+            (_, false) if is_blended => Alpha::Invisible,
+            _ => Alpha::Mask { cutoff },
         }
     }
 }
 
 /// For each material, the range of vertex alpha over all meshes that wear it.
-fn vertex_alpha_ranges(drawn: &Drawn, material_count: usize) -> Vec<Range> {
+fn vertex_alpha_ranges(drawn: &DrawnMeshes, material_count: usize) -> Vec<Range> {
     let mut ranges = vec![Range { low: f32::INFINITY, high: f32::NEG_INFINITY }; material_count];
     for mesh in &drawn.meshes {
         let Some(range) = ranges.get_mut(mesh.material) else { continue };
@@ -204,12 +208,12 @@ mod tests {
     #[test]
     fn alpha_is_sampled_only_where_it_can_fall_on_both_sides_of_the_cutoff() {
         let cut = |low, high, cutoff| Range { low, high }.cut_at(cutoff, true);
-        assert_eq!(cut(0.0, 1.0, 0.5), Alpha::Cut { cutoff: 0.5 });
+        assert_eq!(cut(0.0, 1.0, 0.5), Alpha::Mask { cutoff: 0.5 });
         assert_eq!(cut(0.0, 1.0, 0.0), Alpha::Opaque, "nothing is below a cutoff of 0");
-        assert_eq!(cut(0.0, 1.0, 1.0), Alpha::Cut { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
-        assert_eq!(cut(0.0, 0.49, 0.5), Alpha::Air);
+        assert_eq!(cut(0.0, 1.0, 1.0), Alpha::Mask { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
+        assert_eq!(cut(0.0, 0.49, 0.5), Alpha::Invisible);
         assert_eq!(cut(0.5, 0.5, 0.5), Alpha::Opaque);
         let mask = Range { low: 0.0, high: 0.4 }.cut_at(0.5, false);
-        assert_eq!(mask, Alpha::Cut { cutoff: 0.5 }, "a mask stays a mask, even one that hides everything");
+        assert_eq!(mask, Alpha::Mask { cutoff: 0.5 }, "a mask stays a mask, even one that hides everything");
     }
 }

@@ -158,19 +158,19 @@ pub struct Material {
     pub is_unlit: bool,
 }
 
-/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Cut`] at one half: what is at least half
+/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least half
 /// opaque casts and shows, what is less does neither (see docs/decisions.md, "Blended materials").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
     /// Alpha is ignored.
     Opaque,
     /// Points whose alpha is below the cutoff are holes: to the eye and to light.
-    Cut {
+    Mask {
         /// Linear alpha at and above which a point is solid.
         cutoff: f32,
     },
     /// Nothing of the surface reaches the cutoff: it is left out of drawing, tracing and baking.
-    Air,
+    Invisible,
 }
 
 /// A texture as a material uses it.
@@ -252,8 +252,8 @@ impl Scene {
     }
 
     /// Whether any light-blocking surface has holes cut by alpha, so that rays must sample textures.
-    pub fn has_alpha_cut(&self) -> bool {
-        self.instances.iter().any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Cut { .. }))
+    pub fn has_alpha_mask(&self) -> bool {
+        self.instances.iter().any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Mask { .. }))
     }
 
     /// The material of an instance.

@@ -6,35 +6,35 @@
 use super::{
     LoadError, Node,
     document::{self, Document, place},
-    limits::Log,
+    limits::WarningLog,
     refuse,
 };
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
 /// Nodes of the drawn scene, parents before children, and what each was in the file.
-pub(super) struct Tree {
+pub(super) struct NodeTree {
     pub nodes: Vec<Node>,
     /// For each node, its index in the file.
     pub file_index: Vec<usize>,
     /// All nodes of the file.
-    pub file: Vec<document::Node>,
+    pub file: Vec<document::JsonNode>,
 }
 
 /// Columns so nearly in one plane that the matrix has no usable inverse.
 const SINGULAR: f64 = 1e-12;
 
 /// Reads the default scene, else the first, else every node that has no parent.
-pub(super) fn read(doc: &Document, log: &mut Log) -> Result<Tree, LoadError> {
-    let count = doc.count::<document::Node>();
-    let file: Vec<document::Node> = (0..count).map(|index| doc.get(index)).collect::<Result<_, _>>()?;
+pub(super) fn read(doc: &Document, log: &mut WarningLog) -> Result<NodeTree, LoadError> {
+    let count = doc.count::<document::JsonNode>();
+    let file: Vec<document::JsonNode> = (0..count).map(|index| doc.get(index)).collect::<Result<_, _>>()?;
     let roots = roots(doc, &file)?;
     walk(file, roots, log)
 }
 
-fn roots(doc: &Document, file: &[document::Node]) -> Result<Vec<usize>, LoadError> {
+fn roots(doc: &Document, file: &[document::JsonNode]) -> Result<Vec<usize>, LoadError> {
     let scene = doc.root.get("scene").and_then(serde_json::Value::as_u64).unwrap_or(0) as usize;
-    if doc.count::<document::SceneRoots>() > 0 {
-        return Ok(doc.get::<document::SceneRoots>(scene)?.nodes.unwrap_or_default());
+    if doc.count::<document::JsonSceneRoots>() > 0 {
+        return Ok(doc.get::<document::JsonSceneRoots>(scene)?.nodes.unwrap_or_default());
     }
     let mut is_child = vec![false; file.len()];
     for child in file.iter().flat_map(|node| node.children.iter().flatten()) {
@@ -49,13 +49,13 @@ fn roots(doc: &Document, file: &[document::Node]) -> Result<Vec<usize>, LoadErro
     }
 }
 
-fn parent_of(file: &[document::Node], child: usize) -> usize {
+fn parent_of(file: &[document::JsonNode], child: usize) -> usize {
     file.iter().position(|node| node.children.iter().flatten().any(|&c| c == child)).unwrap_or(child)
 }
 
 /// What the walk knows of a node of the file.
 #[derive(Clone, Copy, PartialEq)]
-enum Mark {
+enum Visit {
     Unseen,
     /// Above the node that is being read now.
     Open,
@@ -63,32 +63,32 @@ enum Mark {
 }
 
 /// What the walk does next.
-enum Step {
+enum WalkStep {
     Enter { index: usize, parent: Option<usize> },
     Leave { index: usize },
 }
 
-fn walk(file: Vec<document::Node>, roots: Vec<usize>, log: &mut Log) -> Result<Tree, LoadError> {
-    let mut tree = Tree { nodes: Vec::new(), file_index: Vec::new(), file };
-    let mut marks = vec![Mark::Unseen; tree.file.len()];
-    let enter = |index, parent| Step::Enter { index, parent };
-    let mut steps: Vec<Step> = roots.into_iter().rev().map(|root| enter(root, None)).collect();
+fn walk(file: Vec<document::JsonNode>, roots: Vec<usize>, log: &mut WarningLog) -> Result<NodeTree, LoadError> {
+    let mut tree = NodeTree { nodes: Vec::new(), file_index: Vec::new(), file };
+    let mut marks = vec![Visit::Unseen; tree.file.len()];
+    let enter = |index, parent| WalkStep::Enter { index, parent };
+    let mut steps: Vec<WalkStep> = roots.into_iter().rev().map(|root| enter(root, None)).collect();
     while let Some(step) = steps.pop() {
         let (index, parent) = match step {
-            Step::Enter { index, parent } => (index, parent),
-            Step::Leave { index } => {
-                marks.get_mut(index).into_iter().for_each(|mark| *mark = Mark::Done);
+            WalkStep::Enter { index, parent } => (index, parent),
+            WalkStep::Leave { index } => {
+                marks.get_mut(index).into_iter().for_each(|mark| *mark = Visit::Done);
                 continue;
             }
         };
         let above = parent.and_then(|node| tree.file_index.get(node)).copied();
         match marks.get_mut(index) {
             None => return Err(missing(&tree, index, above)),
-            Some(Mark::Open) => return Err(LoadError::NodeCycle { node: index, parent: above.unwrap_or(index) }),
-            Some(Mark::Done) => log.warn(SECOND_PARENT, place::<document::Node>(index)),
+            Some(Visit::Open) => return Err(LoadError::NodeCycle { node: index, parent: above.unwrap_or(index) }),
+            Some(Visit::Done) => log.warn(SECOND_PARENT, place::<document::JsonNode>(index)),
             Some(mark) => {
-                *mark = Mark::Open;
-                steps.push(Step::Leave { index });
+                *mark = Visit::Open;
+                steps.push(WalkStep::Leave { index });
                 if let Some(node) = tree.add(index, parent, log)? {
                     let children = tree.file.get(index).and_then(|node| node.children.as_deref()).unwrap_or(&[]);
                     steps.extend(children.iter().rev().map(|&child| enter(child, Some(node))));
@@ -101,14 +101,14 @@ fn walk(file: Vec<document::Node>, roots: Vec<usize>, log: &mut Log) -> Result<T
 
 const SECOND_PARENT: &str = "it has more than one parent, and is drawn under the first alone";
 
-fn missing(tree: &Tree, index: usize, parent: Option<usize>) -> LoadError {
-    let place = parent.map_or_else(|| "scenes".to_owned(), place::<document::Node>);
+fn missing(tree: &NodeTree, index: usize, parent: Option<usize>) -> LoadError {
+    let place = parent.map_or_else(|| "scenes".to_owned(), place::<document::JsonNode>);
     LoadError::structure(place, format!("it has the node {index}, and there are only {}", tree.file.len()))
 }
 
-impl Tree {
+impl NodeTree {
     /// Places a node; `None` where nothing at or below it is drawn.
-    fn add(&mut self, index: usize, parent: Option<usize>, log: &mut Log) -> Result<Option<usize>, LoadError> {
+    fn add(&mut self, index: usize, parent: Option<usize>, log: &mut WarningLog) -> Result<Option<usize>, LoadError> {
         let Some(node) = self.file.get(index) else { return Ok(None) };
         refuse::check_node(node)?;
         if is_hidden(node) {
@@ -149,20 +149,20 @@ impl Tree {
 }
 
 /// `KHR_node_visibility`.
-fn is_hidden(node: &document::Node) -> bool {
+fn is_hidden(node: &document::JsonNode) -> bool {
     let visibility = node.extensions.as_ref().and_then(|all| all.get("KHR_node_visibility"));
     visibility.and_then(|v| v.get("visible")) == Some(&serde_json::Value::Bool(false))
 }
 
 /// `nodes[7] "Wall"`.
-pub(super) fn label(node: &document::Node, index: usize) -> String {
+pub(super) fn label(node: &document::JsonNode, index: usize) -> String {
     match &node.name {
-        Some(name) => format!("{} \"{name}\"", place::<document::Node>(index)),
-        None => place::<document::Node>(index),
+        Some(name) => format!("{} \"{name}\"", place::<document::JsonNode>(index)),
+        None => place::<document::JsonNode>(index),
     }
 }
 
-fn local_matrix(node: &document::Node) -> DMat4 {
+fn local_matrix(node: &document::JsonNode) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         // The last row of an affine matrix, whatever the file says.
         let [a, b, c, _, d, e, f, _, g, h, i, _, x, y, z, _] = *matrix;

@@ -8,8 +8,8 @@
 use super::{
     LoadError,
     accessors::Reader,
-    document::{self, Primitive},
-    nodes::Tree,
+    document::{self, JsonPrimitive},
+    nodes::NodeTree,
 };
 use glam::{DMat3, DMat4, Vec3};
 
@@ -29,7 +29,7 @@ pub(super) struct Skeletons {
 }
 
 impl Skeletons {
-    fn world_from_file_nodes(&mut self, tree: &Tree) -> &[DMat4] {
+    fn world_from_file_nodes(&mut self, tree: &NodeTree) -> &[DMat4] {
         self.world_from_file_node.get_or_insert_with(|| tree.world_from_file_nodes())
     }
 }
@@ -41,10 +41,10 @@ impl Pose {
     /// The pose of the mesh under node `node` of the tree.
     pub fn of_node(
         reader: Reader,
-        tree: &Tree,
+        tree: &NodeTree,
         skeletons: &mut Skeletons,
         node: usize,
-        mesh: &document::Mesh,
+        mesh: &document::JsonMesh,
     ) -> Result<Self, LoadError> {
         let Some((file, drawn)) = tree.file_index.get(node).and_then(|&i| tree.file.get(i)).zip(tree.nodes.get(node))
         else {
@@ -63,7 +63,7 @@ impl Pose {
     }
 
     /// The mesh's own default morph weights, and no skin.
-    pub fn of_mesh(mesh: &document::Mesh) -> Self {
+    pub fn of_mesh(mesh: &document::JsonMesh) -> Self {
         Self { object_from_bind: Vec::new(), weights: mesh.weights.clone().unwrap_or_default() }
     }
 
@@ -71,7 +71,7 @@ impl Pose {
     pub fn apply(
         &self,
         reader: Reader,
-        primitive: &Primitive,
+        primitive: &JsonPrimitive,
         positions: &mut [Vec3],
         normals: Option<&mut Vec<Vec3>>,
     ) -> Result<(), LoadError> {
@@ -120,8 +120,8 @@ impl Pose {
 }
 
 fn joint_matrices(reader: Reader, skin: usize, world_from_file_node: &[DMat4]) -> Result<Vec<DMat4>, LoadError> {
-    let place = document::place::<document::Skin>(skin);
-    let skin: document::Skin = reader.doc.get(skin)?;
+    let place = document::place::<document::JsonSkin>(skin);
+    let skin: document::JsonSkin = reader.doc.get(skin)?;
     let inverse_bind = match skin.inverse_bind_matrices {
         Some(accessor) => reader.floats::<16>(accessor)?,
         None => Vec::new(),
@@ -138,7 +138,7 @@ fn joint_matrices(reader: Reader, skin: usize, world_from_file_node: &[DMat4]) -
     skin.joints.iter().enumerate().map(matrix).collect()
 }
 
-fn influences(reader: Reader, primitive: &Primitive) -> Result<Influences, LoadError> {
+fn influences(reader: Reader, primitive: &JsonPrimitive) -> Result<Influences, LoadError> {
     let set = |n: usize| {
         let joints = primitive.attributes.get(&format!("JOINTS_{n}"))?;
         primitive.attributes.get(&format!("WEIGHTS_{n}")).map(|weights| (*joints, *weights))

@@ -3,9 +3,9 @@
 use super::{
     Dropped, LoadError, Mesh,
     accessors::Reader,
-    document::{self, Primitive, place},
-    limits::Log,
-    nodes::{Tree, label},
+    document::{self, JsonPrimitive, place},
+    limits::WarningLog,
+    nodes::{NodeTree, label},
     normals,
     pose::{Pose, Skeletons},
     refuse,
@@ -16,7 +16,7 @@ use std::collections::{HashMap, hash_map::Entry};
 
 /// What the nodes draw.
 #[derive(Default)]
-pub(super) struct Drawn {
+pub(super) struct DrawnMeshes {
     pub meshes: Vec<Mesh>,
     /// For each mesh, its material in the file.
     pub file_material: Vec<Option<usize>>,
@@ -35,8 +35,8 @@ const BYTES_PER_DRAW: u64 = 256;
 const BYTES_PER_PRIMITIVE: u64 = 1024;
 
 /// Reads what the nodes of a tree draw.
-pub(super) fn read(reader: Reader, tree: &Tree, log: &mut Log) -> Result<Drawn, LoadError> {
-    let mut drawn = Drawn::default();
+pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Result<DrawnMeshes, LoadError> {
+    let mut drawn = DrawnMeshes::default();
     let mut known: HashMap<PosedMesh, Vec<usize>> = HashMap::new();
     let mut skeletons = Skeletons::default();
     for (node, &file_index) in tree.file_index.iter().enumerate() {
@@ -49,7 +49,7 @@ pub(super) fn read(reader: Reader, tree: &Tree, log: &mut Log) -> Result<Drawn, 
                 if file.skin.is_some() {
                     log.warn("its skin was baked as it stands when nothing is animated", label(file, file_index));
                 }
-                let mesh: document::Mesh = reader.doc.get(mesh_index)?;
+                let mesh: document::JsonMesh = reader.doc.get(mesh_index)?;
                 let pose = match is_posed {
                     true => Pose::of_node(reader, tree, &mut skeletons, node, &mesh)?,
                     false => Pose::of_mesh(&mesh),
@@ -63,20 +63,20 @@ pub(super) fn read(reader: Reader, tree: &Tree, log: &mut Log) -> Result<Drawn, 
     Ok(drawn)
 }
 
-impl Drawn {
+impl DrawnMeshes {
     /// Reads the primitives of a mesh, and says which meshes of ours they became.
     fn read_mesh(
         &mut self,
         reader: Reader,
         index: usize,
-        mesh: &document::Mesh,
+        mesh: &document::JsonMesh,
         pose: &Pose,
-        log: &mut Log,
+        log: &mut WarningLog,
     ) -> Result<Vec<usize>, LoadError> {
         let mut made = Vec::new();
         for (at, primitive) in mesh.primitives.iter().flatten().enumerate() {
             let name = mesh.name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
-            let place = format!("{}{name} primitive {at}", place::<document::Mesh>(index));
+            let place = format!("{}{name} primitive {at}", place::<document::JsonMesh>(index));
             reader.budget.take(1, BYTES_PER_PRIMITIVE, || place.clone())?;
             let material = known_material(reader, primitive, &place, log);
             let source = PrimitiveReader { reader, primitive, pose, place: &place, material };
@@ -92,9 +92,9 @@ impl Drawn {
     }
 }
 
-fn known_material(reader: Reader, primitive: &Primitive, place: &str, log: &mut Log) -> Option<usize> {
+fn known_material(reader: Reader, primitive: &JsonPrimitive, place: &str, log: &mut WarningLog) -> Option<usize> {
     let index = primitive.material?;
-    if index < reader.doc.count::<document::Material>() {
+    if index < reader.doc.count::<document::JsonMaterial>() {
         return Some(index);
     }
     log.warn("its material does not exist; the default material is used", place);
@@ -103,7 +103,7 @@ fn known_material(reader: Reader, primitive: &Primitive, place: &str, log: &mut 
 
 struct PrimitiveReader<'a> {
     reader: Reader<'a>,
-    primitive: &'a Primitive,
+    primitive: &'a JsonPrimitive,
     pose: &'a Pose,
     place: &'a str,
     material: Option<usize>,
@@ -111,7 +111,7 @@ struct PrimitiveReader<'a> {
 
 impl PrimitiveReader<'_> {
     /// `None` where there is no surface.
-    fn read(&self, dropped: &mut Dropped, log: &mut Log) -> Result<Option<Mesh>, LoadError> {
+    fn read(&self, dropped: &mut Dropped, log: &mut WarningLog) -> Result<Option<Mesh>, LoadError> {
         let position = self.primitive.attributes.get("POSITION").copied();
         refuse::check_primitive(self.primitive, position.is_some_and(|accessor| self.reader.has_data(accessor)))?;
         let Some(topology) = Topology::from_mode(self.primitive.mode.unwrap_or(4)) else {
@@ -124,7 +124,8 @@ impl PrimitiveReader<'_> {
         };
         let mut positions: Vec<Vec3> = self.reader.floats(position)?.into_iter().map(Vec3::from_array).collect();
         let indices = self.indices(topology, positions.len())?;
-        let mut normals = self.looks("NORMAL", positions.len(), log, |r, at| Ok(vectors(r.floats::<3>(at)?)))?;
+        let mut normals =
+            self.optional_attribute("NORMAL", positions.len(), log, |r, at| Ok(vectors(r.floats::<3>(at)?)))?;
         if self.primitive.targets.is_some() {
             log.warn("its morph targets were baked at their default weights", self.place);
         }
@@ -138,7 +139,7 @@ impl PrimitiveReader<'_> {
         let positions = gather(&positions, &used);
         let normals = normals.map(|all| normals::repaired(gather(&all, &used), &positions, &indices));
         let texcoords = self.texcoords(count, &used, log)?;
-        let colors = self.looks("COLOR_0", count, log, colors)?.map(|all| gather(&all, &used));
+        let colors = self.optional_attribute("COLOR_0", count, log, colors)?.map(|all| gather(&all, &used));
         Ok(Some(Mesh { positions, normals, texcoords, colors, indices, ..Mesh::default() }))
     }
 
@@ -153,11 +154,11 @@ impl PrimitiveReader<'_> {
     }
 
     /// An attribute that only the look depends on: one that cannot be read is left out.
-    fn looks<T>(
+    fn optional_attribute<T>(
         &self,
         name: &'static str,
         count: usize,
-        log: &mut Log,
+        log: &mut WarningLog,
         read: impl Fn(Reader, usize) -> Result<Vec<T>, LoadError>,
     ) -> Result<Option<Vec<T>>, LoadError> {
         let Some(&accessor) = self.primitive.attributes.get(name) else { return Ok(None) };
@@ -171,8 +172,8 @@ impl PrimitiveReader<'_> {
     }
 
     /// Sets 0 and 1; but where the base colour wants a set beyond them, that one stands in place of set 0.
-    fn texcoords(&self, count: usize, used: &[u32], log: &mut Log) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
-        let material = self.material.and_then(|index| self.reader.doc.get::<document::Material>(index).ok());
+    fn texcoords(&self, count: usize, used: &[u32], log: &mut WarningLog) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
+        let material = self.material.and_then(|index| self.reader.doc.get::<document::JsonMaterial>(index).ok());
         let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord()).filter(|&set| set > 1);
         let first = wanted.map_or_else(|| "TEXCOORD_0".to_owned(), |set| format!("TEXCOORD_{set}"));
         let mut sets = [None, None];

@@ -5,7 +5,7 @@
 
 use super::{
     LoadError,
-    document::{BufferView, Document, Node, Primitive},
+    document::{Document, JsonBufferView, JsonNode, JsonPrimitive},
 };
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -64,7 +64,7 @@ fn has(extensions: Option<&BTreeMap<String, Value>>, name: &str) -> bool {
 }
 
 /// Why a view's buffer is not there: perhaps its bytes stand elsewhere, compressed.
-pub(super) fn missing_buffer(view: &BufferView, error: &LoadError) -> LoadError {
+pub(super) fn missing_buffer(view: &JsonBufferView, error: &LoadError) -> LoadError {
     match MESHOPT.iter().find(|name| has(view.extensions.as_ref(), name)) {
         Some(name) => refusal(name),
         None => error.clone(),
@@ -72,7 +72,7 @@ pub(super) fn missing_buffer(view: &BufferView, error: &LoadError) -> LoadError 
 }
 
 /// Refuses a primitive that has no data but its Draco data.
-pub(super) fn check_primitive(primitive: &Primitive, has_plain_positions: bool) -> Result<(), LoadError> {
+pub(super) fn check_primitive(primitive: &JsonPrimitive, has_plain_positions: bool) -> Result<(), LoadError> {
     match has(primitive.extensions.as_ref(), DRACO) && !has_plain_positions {
         true => Err(refusal(DRACO)),
         false => Ok(()),
@@ -80,7 +80,7 @@ pub(super) fn check_primitive(primitive: &Primitive, has_plain_positions: bool) 
 }
 
 /// Refuses a node that draws its mesh many times: the file may call it optional, but the shadows would be wrong.
-pub(super) fn check_node(node: &Node) -> Result<(), LoadError> {
+pub(super) fn check_node(node: &JsonNode) -> Result<(), LoadError> {
     match node.mesh.is_some() && has(node.extensions.as_ref(), INSTANCING) {
         true => Err(refusal(INSTANCING)),
         false => Ok(()),

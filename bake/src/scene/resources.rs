@@ -7,7 +7,7 @@ use super::{
     LoadError, LoadLimits,
     container::read_file,
     document::{self, Document, place},
-    limits::Budget,
+    limits::MemoryBudget,
 };
 use sha2::{Digest, Sha256};
 use std::{
@@ -18,13 +18,13 @@ use std::{
 /// Fetches what URIs name, and hashes what came from other files.
 pub(super) struct Fetcher<'a> {
     folder: PathBuf,
-    budget: &'a Budget,
+    budget: &'a MemoryBudget,
     hasher: Sha256,
 }
 
 impl<'a> Fetcher<'a> {
     /// `bytes` are those of the scene's own file.
-    pub fn new(scene: &Path, bytes: &[u8], budget: &'a Budget) -> Self {
+    pub fn new(scene: &Path, bytes: &[u8], budget: &'a MemoryBudget) -> Self {
         let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Self { folder: folder.to_owned(), budget, hasher: Sha256::new_with_prefix(bytes) }
     }
@@ -47,7 +47,7 @@ impl<'a> Fetcher<'a> {
             return Ok(());
         }
         let path = self.resolve(place, uri)?;
-        let passing = Budget::new(&LoadLimits { max_memory_bytes: self.budget.left() });
+        let passing = MemoryBudget::new(&LoadLimits { max_memory_bytes: self.budget.left() });
         self.hasher.update(read_file(&path, &passing, "put it back beside the scene")?);
         Ok(())
     }
@@ -167,13 +167,13 @@ impl<'a> Buffers<'a> {
             Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => Err(error),
             other => Ok(other),
         };
-        Ok(Self { buffers: (0..doc.count::<document::Buffer>()).map(one).collect::<Result<_, _>>()? })
+        Ok(Self { buffers: (0..doc.count::<document::JsonBuffer>()).map(one).collect::<Result<_, _>>()? })
     }
 
     /// The bytes of a buffer view, and its stride if it states one.
     pub fn view(&self, doc: &Document, index: usize) -> Result<(&[u8], Option<u64>), LoadError> {
-        let view: document::BufferView = doc.get(index)?;
-        let place = || place::<document::BufferView>(index);
+        let view: document::JsonBufferView = doc.get(index)?;
+        let place = || place::<document::JsonBufferView>(index);
         let buffer = self.buffers.get(view.buffer).ok_or_else(|| {
             LoadError::structure(place(), format!("it lies in buffers[{}], which does not exist", view.buffer))
         })?;
@@ -193,8 +193,8 @@ fn read_buffer<'a>(
     binary: Option<&'a [u8]>,
     fetcher: &mut Fetcher,
 ) -> Result<Cow<'a, [u8]>, LoadError> {
-    let buffer: document::Buffer = doc.get(index)?;
-    let place = place::<document::Buffer>(index);
+    let buffer: document::JsonBuffer = doc.get(index)?;
+    let place = place::<document::JsonBuffer>(index);
     match (buffer.uri, binary) {
         (Some(uri), _) => fetcher.fetch(&place, &uri).map(Cow::Owned),
         (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),

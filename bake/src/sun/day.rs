@@ -16,7 +16,7 @@ use super::SUN_ANGULAR_RADIUS_DEG;
 use super::clock::{DAY_MIN, Date, DateError, clock_text};
 use super::compass::Compass;
 use super::ephemeris::{Ephemeris, EphemerisError};
-use super::fit::{Sample, fit};
+use super::fit::{EphemerisSample, fit};
 use super::path::{Day, PathError, SunPath};
 
 /// One arc more is taken only where the path would stray from the ephemeris by more than this, in degrees. Each arc
@@ -219,11 +219,11 @@ fn path_over(
     let duration_min = end - start;
     // At most a minute apart, and joints at halves and thirds fall on a sample.
     let steps = 6 * ((duration_min / 6.0).ceil() as u32).max(4);
-    let sample = |i: u32| -> Result<Sample, EphemerisError> {
+    let sample = |i: u32| -> Result<EphemerisSample, EphemerisError> {
         let t = f64::from(i) / f64::from(steps);
-        Ok(Sample { t, direction: ephemeris.direction(start + t * duration_min)? })
+        Ok(EphemerisSample { t, direction: ephemeris.direction(start + t * duration_min)? })
     };
-    let samples = (0..=steps).map(sample).collect::<Result<Vec<Sample>, _>>()?;
+    let samples = (0..=steps).map(sample).collect::<Result<Vec<EphemerisSample>, _>>()?;
     let fitted = fit(&samples, ephemeris.axis_and_zero(), FIT_ENOUGH_DEG);
     let mut path = SunPath::new(fitted.arcs, SUN_ANGULAR_RADIUS_DEG.to_radians(), duration_min)?;
     path.day = Some(Day {

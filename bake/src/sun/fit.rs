@@ -35,7 +35,7 @@ const UP_FROM: f64 = -1e-4;
 
 /// Where the ephemeris has the sun at one moment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
+pub(super) struct EphemerisSample {
     /// Path time.
     pub t: f64,
     /// Unit, world space.
@@ -54,7 +54,7 @@ pub(super) struct Fit {
 ///
 /// Samples are evenly spaced from t = 0 to t = 1, in a number of steps that six divides. `axis_and_zero` is the frame to
 /// start from, within a few degrees of right.
-pub(super) fn fit(samples: &[Sample], axis_and_zero: [DVec3; 2], enough_deg: f64) -> Fit {
+pub(super) fn fit(samples: &[EphemerisSample], axis_and_zero: [DVec3; 2], enough_deg: f64) -> Fit {
     let mut best = fit_equal_arcs(samples, axis_and_zero, 1);
     for count in 2..=3 {
         if best.error_deg <= enough_deg {
@@ -68,7 +68,7 @@ pub(super) fn fit(samples: &[Sample], axis_and_zero: [DVec3; 2], enough_deg: f64
     best
 }
 
-fn fit_equal_arcs(samples: &[Sample], axis_and_zero: [DVec3; 2], count: usize) -> Fit {
+fn fit_equal_arcs(samples: &[EphemerisSample], axis_and_zero: [DVec3; 2], count: usize) -> Fit {
     let last = samples.len() - 1;
     let share = |i: usize| &samples[i * last / count..=(i + 1) * last / count];
     let loose: Vec<SunArc> = (0..count).map(|i| fit_arc(share(i), axis_and_zero, [None; 2])).collect();
@@ -86,7 +86,7 @@ fn end_direction(arc: &SunArc, end: usize) -> DVec3 {
 }
 
 /// Largest angle between an arc and the samples above the horizon, in radians.
-fn worst_error_rad(arc: &SunArc, samples: &[Sample]) -> f64 {
+fn worst_error_rad(arc: &SunArc, samples: &[EphemerisSample]) -> f64 {
     let up = samples.iter().filter(|sample| sample.direction.y >= UP_FROM);
     up.map(|sample| {
         let direction = arc.direction_at_hour_angle(arc.hour_angle_at(sample.t));
@@ -96,7 +96,7 @@ fn worst_error_rad(arc: &SunArc, samples: &[Sample]) -> f64 {
 }
 
 /// Fits one arc. Where an end is pinned, the arc passes through that direction instead of the sample there.
-fn fit_arc(samples: &[Sample], [mut axis, mut zero]: [DVec3; 2], pins: [Option<DVec3>; 2]) -> SunArc {
+fn fit_arc(samples: &[EphemerisSample], [mut axis, mut zero]: [DVec3; 2], pins: [Option<DVec3>; 2]) -> SunArc {
     let weighted = weigh(samples, pins);
     let mut solution = [0.0; UNKNOWNS];
     for _ in 0..3 {
@@ -112,32 +112,32 @@ fn fit_arc(samples: &[Sample], [mut axis, mut zero]: [DVec3; 2], pins: [Option<D
 }
 
 /// A direction that an arc should have at `s`, from -0.5 at its start to 0.5 at its end, and how much that matters.
-struct Weighted {
+struct WeightedDirection {
     s: f64,
     direction: DVec3,
     weight: f64,
 }
 
-fn weigh(samples: &[Sample], pins: [Option<DVec3>; 2]) -> Vec<Weighted> {
+fn weigh(samples: &[EphemerisSample], pins: [Option<DVec3>; 2]) -> Vec<WeightedDirection> {
     let last = samples.len() - 1;
-    let one = |(i, sample): (usize, &Sample)| {
+    let one = |(i, sample): (usize, &EphemerisSample)| {
         let s = i as f64 / last as f64 - 0.5;
         let weight = 1.0 / (1.0 - 4.0 * s * s).max(1.0 / last as f64).sqrt();
         let pin = if i == 0 { pins[0] } else { pins[1].filter(|_| i == last) };
         match pin {
-            Some(direction) => Weighted { s, direction, weight: PIN_WEIGHT * last as f64 },
-            None => Weighted { s, direction: sample.direction, weight },
+            Some(direction) => WeightedDirection { s, direction, weight: PIN_WEIGHT * last as f64 },
+            None => WeightedDirection { s, direction: sample.direction, weight },
         }
     };
     samples.iter().enumerate().map(one).collect()
 }
 
 /// One round: `[p, q, d, h, r]`.
-fn solve_linearised(samples: &[Weighted], axis: DVec3, zero: DVec3) -> [f64; UNKNOWNS] {
+fn solve_linearised(samples: &[WeightedDirection], axis: DVec3, zero: DVec3) -> [f64; UNKNOWNS] {
     let square = axis.cross(zero);
     let mut normal = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
     let mut previous_hour_angle: Option<f64> = None;
-    for &Weighted { s, direction, weight } in samples {
+    for &WeightedDirection { s, direction, weight } in samples {
         let declination = direction.dot(axis).clamp(-1.0, 1.0).asin();
         let wrapped = direction.dot(square).atan2(direction.dot(zero));
         let hour_angle = previous_hour_angle.map_or(wrapped, |h| h + (wrapped - h + PI).rem_euclid(TAU) - PI);

@@ -50,17 +50,17 @@ pub enum KeyedError {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct SunPathFile {
     angular_radius_deg: Option<f64>,
     duration_min: Option<f64>,
     #[serde(default)]
-    keys: Vec<Key>,
+    keys: Vec<SunPathKey>,
     positions: Option<serde::de::IgnoredAny>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Key {
+struct SunPathKey {
     t: Option<f64>,
     direction: Option<[f64; 3]>,
     azimuth_deg: Option<f64>,
@@ -70,7 +70,7 @@ struct Key {
 
 /// Reads a path of keys. `north_deg` turns azimuths as it turns a day's ([`Compass::new`]); directions are left alone.
 pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
-    let file: File = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
+    let file: SunPathFile = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.positions.is_some() {
         return Err(KeyedError::Positions("positions"));
     }
@@ -101,8 +101,8 @@ pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
 }
 
 /// Unit directions of the keys, world space.
-fn directions(keys: &[Key], compass: &Compass) -> Result<Vec<DVec3>, KeyError> {
-    let one = |(index, key): (usize, &Key)| {
+fn directions(keys: &[SunPathKey], compass: &Compass) -> Result<Vec<DVec3>, KeyError> {
+    let one = |(index, key): (usize, &SunPathKey)| {
         let wrong = |problem: &str| KeyError::Key { index, problem: problem.to_owned() };
         match (key.direction, key.azimuth_deg, key.elevation_deg) {
             (Some(direction), None, None) => DVec3::from_array(direction)

@@ -9,12 +9,12 @@ use glam::{DVec2, Vec2};
 pub(super) struct AlphaMasks {
     /// In the hierarchy's order: index in `triangles`, or [`AlphaMasks::NONE`]. Empty if no triangle has holes.
     of_triangle: Vec<u32>,
-    triangles: Vec<CutTriangle>,
-    masks: Vec<Mask>,
+    triangles: Vec<TriangleMask>,
+    masks: Vec<AlphaTexture>,
 }
 
 /// A triangle with holes.
-struct CutTriangle {
+struct TriangleMask {
     image_uvs: [Vec2; 3],
     /// Vertex alpha times the material's factor.
     alphas: [f32; 3],
@@ -26,7 +26,7 @@ struct CutTriangle {
 }
 
 /// The alpha channel of a material's texture.
-struct Mask {
+struct AlphaTexture {
     size: [u32; 2],
     wrap: [Wrap; 2],
     alpha: Vec<u8>,
@@ -36,19 +36,19 @@ struct Mask {
 }
 
 /// A triangle with holes, for engines that follow the sun across it.
-pub(crate) struct CutView<'a> {
+pub(crate) struct MaskedTriangle<'a> {
     /// Texture coordinates of the corners, in texels.
     pub texel_uvs: [DVec2; 3],
     /// Alpha at the corners, without the texture's.
     pub alphas: [f64; 3],
     /// Least alpha that is solid.
     pub cutoff: f64,
-    /// Whether the corners' alphas are the material's own, for which [`Mask::squares`] were made.
+    /// Whether the corners' alphas are the material's own, for which [`AlphaTexture::squares`] were made.
     is_plain: bool,
-    mask: Option<&'a Mask>,
+    mask: Option<&'a AlphaTexture>,
 }
 
-impl CutView<'_> {
+impl MaskedTriangle<'_> {
     /// A triangle without a texture.
     #[cfg(test)]
     pub fn of_alphas(alphas: [f64; 3], cutoff: f64) -> Self {
@@ -111,7 +111,7 @@ fn is_solid(own: f32, texel: f32, cutoff: f32) -> bool {
     own * texel >= cutoff
 }
 
-/// Bit of [`Mask::squares`] that says that a texel is solid.
+/// Bit of [`AlphaTexture::squares`] that says that a texel is solid.
 const SOLID: u8 = 0x80;
 
 /// Which of four squares lies where coordinates grow or fall.
@@ -124,7 +124,7 @@ impl AlphaMasks {
     const NONE: u32 = u32::MAX;
 
     pub fn new(scene: &Scene, geometry: &Geometry, flat: &[u32]) -> Self {
-        if !scene.has_alpha_cut() {
+        if !scene.has_alpha_mask() {
             return Self::default();
         }
         let mut alpha_mask = Self { of_triangle: vec![Self::NONE; flat.len()], ..Self::default() };
@@ -133,11 +133,11 @@ impl AlphaMasks {
             let surface = geometry.surface(triangle as usize);
             let mesh = &scene.meshes[scene.instances[surface.instance].mesh];
             let material = &scene.materials[mesh.material];
-            let Alpha::Cut { cutoff } = material.alpha else { continue };
+            let Alpha::Mask { cutoff } = material.alpha else { continue };
             let texture = material.base_color_texture;
             let mask = texture.map(|texture| {
                 *mask_of_material[mesh.material].get_or_insert_with(|| {
-                    alpha_mask.masks.push(Mask::new(
+                    alpha_mask.masks.push(AlphaTexture::new(
                         &scene.images[texture.image],
                         texture.wrap,
                         material.base_color.w,
@@ -147,7 +147,7 @@ impl AlphaMasks {
                 })
             });
             alpha_mask.of_triangle[id] = alpha_mask.triangles.len() as u32;
-            alpha_mask.triangles.push(CutTriangle {
+            alpha_mask.triangles.push(TriangleMask {
                 image_uvs: texture.map_or([Vec2::ZERO; 3], |t| image_uvs(mesh, &t, surface.mesh_triangle)),
                 alphas: vertex_alphas(mesh, surface.mesh_triangle).map(|a| a * material.base_color.w),
                 cutoff,
@@ -164,12 +164,12 @@ impl AlphaMasks {
     }
 
     /// What a closed-form engine needs of a triangle with holes.
-    pub fn view(&self, id: usize) -> Option<CutView<'_>> {
+    pub fn view(&self, id: usize) -> Option<MaskedTriangle<'_>> {
         let &cut = self.of_triangle.get(id)?;
         let triangle = self.triangles.get(cut as usize)?;
         let mask = triangle.mask.map(|mask| &self.masks[mask as usize]);
         let size = mask.map_or(DVec2::ONE, |mask| DVec2::new(f64::from(mask.size[0]), f64::from(mask.size[1])));
-        Some(CutView {
+        Some(MaskedTriangle {
             texel_uvs: triangle.image_uvs.map(|uv| uv.as_dvec2() * size),
             alphas: triangle.alphas.map(f64::from),
             cutoff: f64::from(triangle.cutoff),
@@ -186,7 +186,7 @@ impl AlphaMasks {
         }
     }
 
-    fn is_solid_at(&self, triangle: &CutTriangle, barycentric: [f32; 2]) -> bool {
+    fn is_solid_at(&self, triangle: &TriangleMask, barycentric: [f32; 2]) -> bool {
         let texel = triangle
             .mask
             .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
@@ -235,7 +235,7 @@ fn squares(solid: &[bool], [width, height]: [usize; 2]) -> Vec<[u8; 4]> {
     squares
 }
 
-impl Mask {
+impl AlphaTexture {
     /// For a material's factor of alpha and its cutoff.
     fn new(image: &crate::scene::Image, wrap: [Wrap; 2], factor: f32, cutoff: f32) -> Self {
         let alpha: Vec<u8> = image.rgba.iter().map(|texel| texel[3]).collect();
@@ -274,11 +274,11 @@ mod tests {
         for (alpha, cutoff) in [(51, 0.2), (102, 0.4), (153, 0.6), (204, 0.8)] {
             for (alpha, is_solid) in [(alpha, true), (alpha - 1, false)] {
                 let (builder, image) = SceneBuilder::new().image(1, 1, vec![[0, 0, 0, alpha]]);
-                let mask = Mask::new(&builder.build().images[image], [Wrap::Repeat; 2], 1.0, cutoff);
+                let mask = AlphaTexture::new(&builder.build().images[image], [Wrap::Repeat; 2], 1.0, cutoff);
                 let texel_uvs = [DVec2::ZERO; 3];
                 let cutoff = f64::from(cutoff);
-                let plain = CutView { texel_uvs, alphas: [1.0; 3], cutoff, is_plain: true, mask: Some(&mask) };
-                let by_corners = CutView { is_plain: false, ..plain };
+                let plain = MaskedTriangle { texel_uvs, alphas: [1.0; 3], cutoff, is_plain: true, mask: Some(&mask) };
+                let by_corners = MaskedTriangle { is_plain: false, ..plain };
                 assert_eq!(plain.uniform([0, 0]).1, Some(is_solid), "{alpha} of {cutoff}");
                 assert_eq!(by_corners.uniform([0, 0]).1, Some(is_solid), "{alpha} of {cutoff}");
             }

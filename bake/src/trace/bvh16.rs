@@ -16,13 +16,13 @@ pub(crate) type Points = [[f32; WIDTH]; 3];
 
 /// The hierarchy. Boxes are along axes of the caller's choice. The first node is the root; there is none without triangles.
 pub(crate) struct Bvh16 {
-    pub nodes: Vec<Node>,
-    pub leaves: Vec<Leaf>,
+    pub nodes: Vec<Bvh16Node>,
+    pub leaves: Vec<Bvh16Leaf>,
 }
 
 /// Up to sixteen boxes. Lanes from `count` on are not to be used.
 #[derive(Default)]
-pub(crate) struct Node {
+pub(crate) struct Bvh16Node {
     pub centre: Points,
     pub half: Points,
     pub child: [Child; WIDTH],
@@ -31,7 +31,7 @@ pub(crate) struct Node {
 
 /// Up to sixteen triangles. Lanes from `count` on are not to be used.
 #[derive(Default)]
-pub(crate) struct Leaf {
+pub(crate) struct Bvh16Leaf {
     pub corners: [Points; 3],
     /// Indices among the tracer's triangles.
     pub ids: [u32; WIDTH],
@@ -149,7 +149,7 @@ impl Collapse<'_> {
                 self.bvh.nodes[parent].child[lane] = Child::Node(index as u32);
             }
             let members = self.open(binary);
-            let mut node = Node { count: members.len(), ..Node::default() };
+            let mut node = Bvh16Node { count: members.len(), ..Bvh16Node::default() };
             for (lane, &member) in members.iter().enumerate() {
                 let BinaryNode { bounds: [low, high], .. } = self.tree[member as usize];
                 for k in 0..3 {
@@ -171,7 +171,7 @@ impl Collapse<'_> {
 
     /// Makes a leaf of all that a binary node holds.
     fn leaf(&mut self, member: u32) -> Child {
-        let mut leaf = Leaf::default();
+        let mut leaf = Bvh16Leaf::default();
         let mut pending = vec![member];
         while let Some(member) = pending.pop() {
             let BinaryNode { count, first, .. } = self.tree[member as usize];

@@ -22,7 +22,7 @@ pub use packet::{PACKET, PacketScratch, PacketTracer, ShadowQuery};
 
 use crate::scene::{Geometry, Scene};
 use alpha_mask::AlphaMasks;
-pub(crate) use alpha_mask::CutView;
+pub(crate) use alpha_mask::MaskedTriangle;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::builder::build_bvh2;
@@ -81,7 +81,7 @@ impl Tracer {
             (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(scene, i)).map(|i| i as u32).collect();
         let scaled = |&i: &u32| geometry.triangles[i as usize].map(|v| (v.as_dvec3() * tracer_from_bake).as_vec3());
         let padding = Vec3A::splat(BOX_PADDING * 1024.0);
-        let boxes: Vec<Padded> = solid.iter().map(|i| Padded::new(scaled(i), padding)).collect();
+        let boxes: Vec<PaddedBox> = solid.iter().map(|i| PaddedBox::new(scaled(i), padding)).collect();
         let bvh = match boxes.is_empty() {
             true => CwBvh::default(),
             false => build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut std::time::Duration::default()),
@@ -118,7 +118,7 @@ impl Tracer {
     }
 
     /// A triangle with holes.
-    pub(crate) fn cut(&self, id: u32) -> Option<CutView<'_>> {
+    pub(crate) fn cut(&self, id: u32) -> Option<MaskedTriangle<'_>> {
         self.alpha_mask.view(id as usize)
     }
 
@@ -240,7 +240,8 @@ pub(crate) fn binary_hierarchy(boxes: &[[Vec3; 2]]) -> (Vec<BinaryNode>, Vec<u32
     if boxes.is_empty() {
         return (Vec::new(), Vec::new());
     }
-    let boxes: Vec<Padded> = boxes.iter().map(|&[low, high]| Padded(Aabb::new(low.into(), high.into()))).collect();
+    let boxes: Vec<PaddedBox> =
+        boxes.iter().map(|&[low, high]| PaddedBox(Aabb::new(low.into(), high.into()))).collect();
     let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::medium_build() };
     let bvh = build_bvh2(&boxes, params, &mut std::time::Duration::default());
     let node = |node: &obvhs::bvh2::node::Bvh2Node| BinaryNode {
@@ -283,16 +284,16 @@ fn lifts_m(scene: &Scene, geometry: &Geometry) -> Vec<f64> {
 }
 
 /// A triangle's box, grown.
-struct Padded(Aabb);
+struct PaddedBox(Aabb);
 
-impl Padded {
+impl PaddedBox {
     fn new(corners: [Vec3; 3], padding: Vec3A) -> Self {
         let tight = Aabb::from_points(&corners.map(Vec3A::from));
         Self(Aabb::new(tight.min - padding, tight.max + padding))
     }
 }
 
-impl Boundable for Padded {
+impl Boundable for PaddedBox {
     fn aabb(&self) -> Aabb {
         self.0
     }

@@ -12,7 +12,7 @@
 //! passes it within [`CORNER_PADDING`]. What is kept is then asked in `f64`, by the very test that [`Tracer`] uses. So
 //! answers are the tracer's, watertight at shared edges, and do not depend on the width of SIMD.
 
-use super::bvh16::{Bvh16, Child, Leaf, Node, WIDTH, bits, first_lanes, push_far_first};
+use super::bvh16::{Bvh16, Bvh16Leaf, Bvh16Node, Child, WIDTH, bits, first_lanes, push_far_first};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
 use glam::{DMat3, DVec3};
@@ -41,14 +41,14 @@ pub struct PacketScratch {
     /// What rays have yet to go to together, and which of them.
     shared: Vec<(Child, u32)>,
     /// The same with their distances.
-    sorted: Vec<Pending>,
+    sorted: Vec<QueuedChild>,
     /// For each ray, the children of a node that it met.
     children: [u32; PACKET],
 }
 
 /// What a walk has yet to go to.
 #[derive(Debug, Clone, Copy)]
-struct Pending {
+struct QueuedChild {
     child: Child,
     met_by: u32,
     /// Least distance along any of the rays that met it.
@@ -57,7 +57,7 @@ struct Pending {
 
 /// A ray as the walk has it, tracer space.
 #[derive(Debug)]
-struct Narrow {
+struct RayF32 {
     start: [f32; 3],
     inverse: [f32; 3],
     axes: [usize; 3],
@@ -65,7 +65,7 @@ struct Narrow {
     shear: [f32; 3],
 }
 
-impl Narrow {
+impl RayF32 {
     fn new(start: DVec3, direction: &Direction) -> Self {
         // A component of zero would make a NaN of a box side that the ray starts on.
         let inverse = |d: f64| 1.0 / if d.abs() < 1e-12 { 1e-12f64.copysign(d) } else { d };
@@ -96,7 +96,7 @@ pub struct ShadowQuery {
 /// A shadow ray made ready, tracer space.
 #[derive(Debug)]
 struct ShadowRay {
-    narrow: Narrow,
+    ray_f32: RayF32,
     start: DVec3,
     direction: Direction,
     /// The triangle that it leaves, among the tracer's.
@@ -115,20 +115,20 @@ impl<'a> PacketTracer<'a> {
     /// Which of up to [`PACKET`] shadow rays something solid stops: a bit set. Rays that go roughly the same way from
     /// neighbouring points are the fastest. `guess` is asked first, and left at something that stopped one of them: the
     /// answer does not depend on it.
-    pub fn occluded(&self, room: &mut PacketScratch, queries: &[ShadowQuery], guess: &mut Option<Occluder>) -> u32 {
-        room.rays.clear();
-        room.rays.extend(queries.iter().map(|query| self.ray(query)));
+    pub fn occluded(&self, scratch: &mut PacketScratch, queries: &[ShadowQuery], guess: &mut Option<Occluder>) -> u32 {
+        scratch.rays.clear();
+        scratch.rays.extend(queries.iter().map(|query| self.ray(query)));
         let mut stopped = 0;
         if let Some(Occluder(id)) = *guess {
             // What does not stop one of them will hardly stop the next.
-            let first = room.rays.iter().take_while(|ray| ray.own != id && self.meets(ray, id).is_some()).count();
+            let first = scratch.rays.iter().take_while(|ray| ray.own != id && self.meets(ray, id).is_some()).count();
             stopped = (1u32 << first) - 1;
         }
         let open = first_lanes(queries.len()) & !stopped;
         if open != 0 && !self.bvh.nodes.is_empty() {
             let level = self.level;
             *guess = None;
-            stopped |= dispatch!(level, simd => self.stop_any(simd, room, open, guess));
+            stopped |= dispatch!(level, simd => self.find_occluded(simd, scratch, open, guess));
         }
         stopped
     }
@@ -137,7 +137,7 @@ impl<'a> PacketTracer<'a> {
         let direction = Direction::new(query.direction);
         let start = self.tracer.shadow_start(query.origin_m, &direction);
         ShadowRay {
-            narrow: Narrow::new(start, &direction),
+            ray_f32: RayF32::new(start, &direction),
             start,
             direction,
             own: self.id_of_flat[query.triangle as usize],
@@ -145,19 +145,19 @@ impl<'a> PacketTracer<'a> {
     }
 
     /// For each of up to [`PACKET`] shadow rays, the nearest surface within `reach_m`; for the rest, none.
-    pub fn nearest(&self, room: &mut PacketScratch, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
-        room.rays.clear();
-        room.rays.extend(queries.iter().map(|query| self.ray(query)));
+    pub fn nearest(&self, scratch: &mut PacketScratch, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
+        scratch.rays.clear();
+        scratch.rays.extend(queries.iter().map(|query| self.ray(query)));
         let mut found = [None; PACKET];
         if !queries.is_empty() && !self.bvh.nodes.is_empty() {
             let reach = reach_m * self.tracer.tracer_from_bake + self.tracer.run_up;
             let level = self.level;
-            dispatch!(level, simd => self.find_nearest(simd, room, reach, &mut found));
+            dispatch!(level, simd => self.find_nearest(simd, scratch, reach, &mut found));
         }
         found.map(|found| found.map(|nearest| self.hit(&nearest)))
     }
 
-    fn hit(&self, nearest: &Nearest) -> Hit {
+    fn hit(&self, nearest: &NearestHit) -> Hit {
         Hit {
             triangle: self.tracer.flat[nearest.id as usize],
             distance_m: (nearest.distance - self.tracer.run_up).max(0.0) / self.tracer.tracer_from_bake,
@@ -172,8 +172,14 @@ impl<'a> PacketTracer<'a> {
 
     /// Walks for the rays of a bit set, and gives back those that something stops.
     #[inline(always)]
-    fn stop_any<S: Simd>(&self, simd: S, room: &mut PacketScratch, open: u32, found: &mut Option<Occluder>) -> u32 {
-        let PacketScratch { rays, shared, children, near, .. } = room;
+    fn find_occluded<S: Simd>(
+        &self,
+        simd: S,
+        scratch: &mut PacketScratch,
+        open: u32,
+        found: &mut Option<Occluder>,
+    ) -> u32 {
+        let PacketScratch { rays, shared, children, near, .. } = scratch;
         let mut active = open;
         shared.clear();
         shared.push((Child::ROOT, open));
@@ -188,7 +194,7 @@ impl<'a> PacketTracer<'a> {
                     let mut met = 0;
                     children.fill(0);
                     for ray in bits(asking) {
-                        children[ray] = node_met(simd, node, &rays[ray].narrow, f32::INFINITY, near);
+                        children[ray] = node_met(simd, node, &rays[ray].ray_f32, f32::INFINITY, near);
                         met |= children[ray];
                     }
                     let of_rays = u32x16::from_slice(simd, children);
@@ -202,7 +208,7 @@ impl<'a> PacketTracer<'a> {
                     let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let ray = &rays[index];
-                        for lane in bits(leaf_met(simd, leaf, &ray.narrow, f32::INFINITY)) {
+                        for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, f32::INFINITY)) {
                             let id = leaf.ids[lane];
                             if id != ray.own && self.meets(ray, id).is_some() {
                                 *found = Some(Occluder(id));
@@ -225,15 +231,15 @@ impl<'a> PacketTracer<'a> {
     fn find_nearest<S: Simd>(
         &self,
         simd: S,
-        room: &mut PacketScratch,
+        scratch: &mut PacketScratch,
         reach: f64,
-        found: &mut [Option<Nearest>; PACKET],
+        found: &mut [Option<NearestHit>; PACKET],
     ) {
-        let PacketScratch { rays, sorted, children, near, .. } = room;
+        let PacketScratch { rays, sorted, children, near, .. } = scratch;
         let mut reach = [reach; PACKET];
         sorted.clear();
-        sorted.push(Pending { child: Child::ROOT, met_by: first_lanes(rays.len()), near: 0.0 });
-        while let Some(Pending { child, met_by, near: least }) = sorted.pop() {
+        sorted.push(QueuedChild { child: Child::ROOT, met_by: first_lanes(rays.len()), near: 0.0 });
+        while let Some(QueuedChild { child, met_by, near: least }) = sorted.pop() {
             let asking = met_by;
             match child {
                 Child::Node(node) => {
@@ -244,7 +250,7 @@ impl<'a> PacketTracer<'a> {
                     for ray in bits(asking) {
                         let far = reach[ray] as f32 * FAR_SLACK;
                         if least <= far {
-                            children[ray] = node_met(simd, node, &rays[ray].narrow, far, near);
+                            children[ray] = node_met(simd, node, &rays[ray].ray_f32, far, near);
                             met |= children[ray];
                             nearest = nearest.min(f32x16::from_slice(simd, near));
                         }
@@ -258,7 +264,7 @@ impl<'a> PacketTracer<'a> {
                         push_far_first(
                             sorted,
                             first,
-                            Pending { child: node.child[lane], met_by, near: near[lane] },
+                            QueuedChild { child: node.child[lane], met_by, near: near[lane] },
                             |pending| pending.near,
                         );
                     }
@@ -267,13 +273,13 @@ impl<'a> PacketTracer<'a> {
                     let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let (ray, reach, found) = (&rays[index], &mut reach[index], &mut found[index]);
-                        for lane in bits(leaf_met(simd, leaf, &ray.narrow, *reach as f32 * FAR_SLACK)) {
+                        for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, *reach as f32 * FAR_SLACK)) {
                             let id = leaf.ids[lane];
                             if id != ray.own
                                 && let Some((distance, barycentric)) = self.meets(ray, id)
                                 && is_nearer((id, distance), found, *reach)
                             {
-                                (*reach, *found) = (distance, Some(Nearest { id, distance, barycentric }));
+                                (*reach, *found) = (distance, Some(NearestHit { id, distance, barycentric }));
                             }
                         }
                     }
@@ -288,7 +294,7 @@ const FAR_SLACK: f32 = 1.0 + 1e-6;
 
 /// What is nearest to a ray so far, tracer space.
 #[derive(Debug, Clone, Copy)]
-struct Nearest {
+struct NearestHit {
     id: u32,
     distance: f64,
     barycentric: [f64; 2],
@@ -296,7 +302,7 @@ struct Nearest {
 
 /// Of equally near triangles the one with the lowest index counts, whatever the order they are met in.
 #[inline]
-fn is_nearer((id, distance): (u32, f64), found: &Option<Nearest>, reach: f64) -> bool {
+fn is_nearer((id, distance): (u32, f64), found: &Option<NearestHit>, reach: f64) -> bool {
     match found {
         Some(nearest) => distance < nearest.distance || (distance == nearest.distance && id < nearest.id),
         None => distance <= reach,
@@ -305,7 +311,7 @@ fn is_nearer((id, distance): (u32, f64), found: &Option<Nearest>, reach: f64) ->
 
 /// Which of a node's boxes a ray meets before `far`: a bit set. `near` gets where it enters them.
 #[inline(always)]
-fn node_met<S: Simd>(simd: S, node: &Node, ray: &Narrow, far: f32, near: &mut [f32; WIDTH]) -> u32 {
+fn node_met<S: Simd>(simd: S, node: &Bvh16Node, ray: &RayF32, far: f32, near: &mut [f32; WIDTH]) -> u32 {
     let [x, y, z] = ray.inverse;
     let middle_x = (f32x16::from_slice(simd, &node.centre[0]) - ray.start[0]) * x;
     let middle_y = (f32x16::from_slice(simd, &node.centre[1]) - ray.start[1]) * y;
@@ -323,7 +329,7 @@ fn node_met<S: Simd>(simd: S, node: &Node, ray: &Narrow, far: f32, near: &mut [f
 
 /// Which triangles of a leaf a ray may meet before `far`: a bit set.
 #[inline(always)]
-fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, ray: &Narrow, far: f32) -> u32 {
+fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, ray: &RayF32, far: f32) -> u32 {
     let [i, j, k] = ray.axes;
     let [shear_x, shear_y, along] = ray.shear;
     let [a, b, c] = &leaf.corners;
@@ -363,7 +369,7 @@ mod tests {
     use glam::{Vec2, Vec3};
 
     /// Stones, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
-    fn packets(ask: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
+    fn packets(check: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
         let mut builder = SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0));
         for i in 0..12 {
             let at = Vec3::new((i % 4) as f32 * 2.0 - 3.0, 0.3, (i / 4) as f32 * 2.0 - 2.0);
@@ -373,7 +379,7 @@ mod tests {
         let scene = builder.build();
         let geometry = Geometry::new(&scene);
         let tracer = Tracer::new(&scene, &geometry);
-        let mut scatter = PacketTracer::new(&tracer);
+        let mut packet_tracer = PacketTracer::new(&tracer);
         let mut state = 5;
         let mut random = || pseudo_random(&mut state);
         for _ in 0..400 {
@@ -388,21 +394,22 @@ mod tests {
                 ShadowQuery { origin_m: tracer.lift(point, normal, triangle), direction, triangle }
             };
             let queries: Vec<ShadowQuery> = (0..PACKET).map(|_| query()).collect();
-            ask(&tracer, &mut scatter, &queries);
+            check(&tracer, &mut packet_tracer, &queries);
         }
     }
 
     #[test]
     fn packets_are_stopped_by_what_stops_single_rays() {
-        packets(|tracer, scatter, queries| {
+        packets(|tracer, packet_tracer, queries| {
             let expected = queries.iter().map(|q| tracer.is_occluded(q.origin_m, &Direction::new(q.direction)));
             let expected = expected.enumerate().fold(0, |bits, (i, is_stopped)| bits | u32::from(is_stopped) << i);
             for level in [Level::new(), Level::baseline()] {
-                scatter.level = level;
+                packet_tracer.level = level;
                 for count in [PACKET, 5] {
                     let mut guess = None;
                     for _ in 0..2 {
-                        let stopped = scatter.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
+                        let stopped =
+                            packet_tracer.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
                         assert_eq!(stopped, expected & first_lanes(count));
                     }
                 }
@@ -412,10 +419,10 @@ mod tests {
 
     #[test]
     fn packets_find_what_is_nearest_to_single_rays() {
-        packets(|tracer, scatter, queries| {
+        packets(|tracer, packet_tracer, queries| {
             for (level, reach_m) in [(Level::new(), f64::INFINITY), (Level::baseline(), 1.5)] {
-                scatter.level = level;
-                let found = scatter.nearest(&mut PacketScratch::default(), queries, reach_m);
+                packet_tracer.level = level;
+                let found = packet_tracer.nearest(&mut PacketScratch::default(), queries, reach_m);
                 for (query, found) in queries.iter().zip(found) {
                     let hit = tracer.closest_hit(query.origin_m, &Direction::new(query.direction));
                     let expected = hit.filter(|hit| hit.distance_m <= reach_m).map(|hit| hit.distance_m);

@@ -7,7 +7,7 @@ use super::{Direction, Occluder, Tracer};
 use glam::DVec3;
 
 /// A ray to a lamp, tracer space.
-struct Reach {
+struct LampRay {
     start: DVec3,
     direction: Direction,
     /// Distance of the lamp from the start.
@@ -28,15 +28,15 @@ impl Tracer {
         self.reach(origin_m, lamp_m).is_some_and(|reach| self.ends_beyond(&reach, occluder.0 as usize))
     }
 
-    fn reach(&self, origin_m: DVec3, lamp_m: DVec3) -> Option<Reach> {
+    fn reach(&self, origin_m: DVec3, lamp_m: DVec3) -> Option<LampRay> {
         let way = (lamp_m - origin_m) * self.tracer_from_bake;
         let direction = Direction::new(way.try_normalize()?);
         let start = self.shadow_start(origin_m, &direction);
-        Some(Reach { start, direction, length: way.length() + self.run_up })
+        Some(LampRay { start, direction, length: way.length() + self.run_up })
     }
 
     /// Whether a ray meets a triangle and goes on beyond it.
-    fn ends_beyond(&self, reach: &Reach, id: usize) -> bool {
+    fn ends_beyond(&self, reach: &LampRay, id: usize) -> bool {
         let Some((distance, _)) = self.meet(reach.start, &reach.direction, id) else { return false };
         let [a, b, c] = self.corners[id].map(|corner| corner.as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero();

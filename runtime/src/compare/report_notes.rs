@@ -67,7 +67,7 @@ pub(super) fn notes(inputs: &ComparisonInputs) -> Vec<String> {
     let has_sixteen_bits = inputs.sets.iter().any(|set| set.entry.bits == 16);
     let has_volumes = has(|one| matches!(one, TechniqueSpec::Volumes(_)));
     let materials = &inputs.stage.scene.materials;
-    let has_alpha_mask = materials.iter().any(|material| matches!(material.alpha, Alpha::Cut { .. }));
+    let has_alpha_mask = materials.iter().any(|material| matches!(material.alpha, Alpha::Mask { .. }));
     let notes = [
         (has_eight_bits && has_sixteen_bits).then_some(EIGHT_BITS),
         (has_volumes && has_alpha_mask).then_some(WHOLE_CARDS),

@@ -118,7 +118,7 @@ fn key(stage: &Stage, instance: usize) -> BatchKey {
         surface: SurfaceVariant {
             is_textured: texture.is_some(),
             has_vertex_color: stage.mesh(instance).colors.is_some(),
-            is_cut: matches!(material.alpha, Alpha::Cut { .. }),
+            is_cut: matches!(material.alpha, Alpha::Mask { .. }),
         },
         is_two_sided: false,
         is_ground: false,

@@ -114,8 +114,8 @@ fn bound(
 
 fn material_uniform(material: &Material) -> MaterialUniform {
     let cutoff = match material.alpha {
-        Alpha::Cut { cutoff } => cutoff,
-        Alpha::Opaque | Alpha::Air => 0.0,
+        Alpha::Mask { cutoff } => cutoff,
+        Alpha::Opaque | Alpha::Invisible => 0.0,
     };
     let wrap = material.base_color_texture.map_or([0; 2], |texture| texture.wrap.map(wrap_code));
     MaterialUniform {

@@ -23,7 +23,7 @@ pub fn truth(stage: &Stage, rays: Option<u32>) -> DrawPlan {
     let is_soft = rays.is_some();
     let why = if is_soft { "truth:soft sees the light's disc" } else { "truth:hard sees the light's middle" };
     let cost = rays.map_or("N rays a pixel and light, not one".into(), |n| format!("{n} rays a pixel and light"));
-    let (has_lamp, has_alpha_mask) = (stage.lamp.is_some(), stage.scene.has_alpha_cut());
+    let (has_lamp, has_alpha_mask) = (stage.lamp.is_some(), stage.scene.has_alpha_mask());
     let needs = vec![
         need("truth-of-disc", is_soft, why, cost, ["--technique truth:hard", "--technique truth:soft:N"]),
         need(

@@ -141,7 +141,7 @@ pub fn beside_truth(
 /// The scene with its leaves solid: shadow volumes do not see the holes in cards, and this is what they draw.
 pub fn with_solid_leaves(mut scene: Scene) -> Scene {
     for material in &mut scene.materials {
-        if matches!(material.alpha, Alpha::Cut { .. }) {
+        if matches!(material.alpha, Alpha::Mask { .. }) {
             material.alpha = Alpha::Opaque;
         }
     }

@@ -317,7 +317,7 @@ fn push_edge(
 
 /// Whether a triangle's material cuts holes.
 fn has_alpha_mask(stage: &Stage, triangle: usize) -> bool {
-    matches!(stage.material(triangle).alpha, Alpha::Cut { .. })
+    matches!(stage.material(triangle).alpha, Alpha::Mask { .. })
 }
 
 /// Whether fewer than one edge in ten is shared.

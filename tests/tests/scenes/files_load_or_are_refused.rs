@@ -30,7 +30,7 @@ fn rewrite(scene: &Scene, name: &str) -> Scene {
     std::fs::write(&path, &written.bytes).expect("written");
     let again = load(&path, &LoadLimits::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let places: Vec<(usize, usize)> = again.instances.iter().map(|i| (i.node, again.meshes[i.mesh].gltf.1)).collect();
-    assert_eq!(places, written.places, "{name}");
+    assert_eq!(places, written.primitives_of_instances, "{name}");
     again
 }
 

@@ -10,7 +10,7 @@ pub fn scene(parts: Vec<(Mesh, Vec<DMat4>)>) -> Scene {
         nodes: Vec::new(),
         meshes: Vec::new(),
         instances: Vec::new(),
-        materials: vec![material(Alpha::Opaque), material(Alpha::Air)],
+        materials: vec![material(Alpha::Opaque), material(Alpha::Invisible)],
         images: Vec::new(),
         cameras: Vec::new(),
         sun_direction: None,

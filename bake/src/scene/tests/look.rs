@@ -33,11 +33,11 @@ const SOLID: [u8; 4] = [9, 9, 9, 255];
 #[test]
 fn blended_surfaces_are_cut_at_one_half_and_are_air_where_nothing_reaches_it() {
     let blend = || json!({ "alphaMode": "BLEND" });
-    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, SOLID]), Alpha::Cut { cutoff: 0.5 });
-    assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Air, "glass");
-    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Air, "a faint decal");
+    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.5 });
+    assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Invisible, "glass");
+    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Invisible, "a faint decal");
     assert_eq!(alpha_of(blend(), 1.0, &[HALF, SOLID]), Alpha::Opaque, "nothing to cut");
-    assert_eq!(alpha_of(blend(), 0.9, &[HALF, SOLID]), Alpha::Cut { cutoff: 0.5 });
+    assert_eq!(alpha_of(blend(), 0.9, &[HALF, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(json!({}), 0.1, &[CLEAR]), Alpha::Opaque, "OPAQUE ignores alpha");
 }
 
@@ -45,16 +45,16 @@ fn blended_surfaces_are_cut_at_one_half_and_are_air_where_nothing_reaches_it() {
 #[test]
 fn masks_keep_their_cutoff_and_the_ends_of_its_range_mean_what_they_say() {
     let mask = |cutoff: f32| json!({ "alphaMode": "MASK", "alphaCutoff": cutoff });
-    assert_eq!(alpha_of(mask(0.25), 1.0, &[CLEAR, SOLID]), Alpha::Cut { cutoff: 0.25 });
-    assert_eq!(alpha_of(json!({ "alphaMode": "MASK" }), 1.0, &[CLEAR, SOLID]), Alpha::Cut { cutoff: 0.5 });
+    assert_eq!(alpha_of(mask(0.25), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.25 });
+    assert_eq!(alpha_of(json!({ "alphaMode": "MASK" }), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(mask(0.0), 1.0, &[CLEAR, SOLID]), Alpha::Opaque, "nothing is below 0");
-    assert_eq!(alpha_of(mask(1.0), 1.0, &[CLEAR, SOLID]), Alpha::Cut { cutoff: 1.0 });
+    assert_eq!(alpha_of(mask(1.0), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 1.0 });
     assert_eq!(alpha_of(mask(1.0), 1.0, &[SOLID]), Alpha::Opaque);
 }
 
 #[test]
 fn vertex_alpha_counts() {
-    for (alpha, expected) in [(0.25f32, Alpha::Air), (1.0, Alpha::Opaque)] {
+    for (alpha, expected) in [(0.25f32, Alpha::Invisible), (1.0, Alpha::Opaque)] {
         let mut b = Builder::new();
         let color = b.floats(&[[1.0, 0.5, 2.0, alpha]; 3]);
         let scene = with_material(&mut b, json!({ "COLOR_0": color }), json!({ "alphaMode": "BLEND" }));

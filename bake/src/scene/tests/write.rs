@@ -49,9 +49,9 @@ fn two_by_two() -> Builder {
 fn nodes_instances_and_triangles_come_back_in_order_and_to_the_last_bit() {
     let scene = two_by_two().scene();
     let (written, again) = rewrite(&scene);
-    assert_eq!(written.places, [(1, 0), (1, 1), (2, 0), (2, 1)]);
+    assert_eq!(written.primitives_of_instances, [(1, 0), (1, 1), (2, 0), (2, 1)]);
     let places: Vec<_> = again.instances.iter().map(|i| (i.node, again.meshes[i.mesh].gltf.1)).collect();
-    assert_eq!(places, written.places);
+    assert_eq!(places, written.primitives_of_instances);
     assert_eq!(again.centre_m, scene.centre_m);
     for (a, b) in scene.nodes.iter().zip(&again.nodes) {
         assert_eq!((&a.name, a.parent, a.world_from_node), (&b.name, b.parent, b.world_from_node));
@@ -125,7 +125,7 @@ fn looks_come_back() {
         assert_eq!((&a.name, a.base_color, a.emissive, a.alpha), (&b.name, b.base_color, b.emissive, b.alpha));
         assert_eq!((a.is_double_sided, a.is_unlit), (b.is_double_sided, b.is_unlit));
     }
-    assert_eq!((again.materials[0].alpha, again.materials[1].alpha), (Alpha::Cut { cutoff: 0.3 }, Alpha::Air));
+    assert_eq!((again.materials[0].alpha, again.materials[1].alpha), (Alpha::Mask { cutoff: 0.3 }, Alpha::Invisible));
     let texture = |scene: &Scene| scene.materials[0].base_color_texture.expect("a texture");
     let (a, b) = (texture(&scene), texture(&again));
     assert_eq!((a.texcoord, b.texcoord, a.wrap), (1, 0, b.wrap), "the picture's coordinates move to set 0");
@@ -161,7 +161,7 @@ fn skinned_meshes_come_back_where_they_stood() {
     b.node(json!({ "mesh": mesh, "translation": [0, 0, 9] }));
     let scene = b.scene();
     let (written, again) = rewrite(&scene);
-    assert_eq!(written.places, [(0, 0), (1, 0)]);
+    assert_eq!(written.primitives_of_instances, [(0, 0), (1, 0)]);
     let triangles = |scene: &Scene| crate::scene::Geometry::new(scene).triangles;
     assert_eq!(triangles(&scene), triangles(&again));
     assert!(again.warnings.is_empty(), "{:?}", again.warnings);

@@ -13,13 +13,13 @@
 //! a few at a time.
 
 use super::arc::{Declination, half_space, of_diamond};
-use crate::trace::CutView;
+use crate::trace::MaskedTriangle;
 use glam::DVec3;
 use smallvec::SmallVec;
 
 /// A triangle with holes, seen from a point along one lane.
 pub(super) struct Pierced<'a> {
-    pub cut: CutView<'a>,
+    pub cut: MaskedTriangle<'a>,
     /// Which triangle of a packet it is, and along which lane it is seen.
     pub slot: usize,
     pub lane: usize,
@@ -32,7 +32,12 @@ pub(super) struct Pierced<'a> {
 
 impl<'a> Pierced<'a> {
     /// From the corners relative to the point, arc frame.
-    pub fn new(cut: CutView<'a>, [slot, lane]: [usize; 2], [a, b, c]: [DVec3; 3], declination: Declination) -> Self {
+    pub fn new(
+        cut: MaskedTriangle<'a>,
+        [slot, lane]: [usize; 2],
+        [a, b, c]: [DVec3; 3],
+        declination: Declination,
+    ) -> Self {
         let normals = [b.cross(c), c.cross(a), a.cross(b)];
         let scale = DVec3::new(declination.cos, declination.cos, declination.sin);
         let weights = normals.map(|n| n * scale);
@@ -172,7 +177,7 @@ mod tests {
         let equator = Declination { cos: 1.0, sin: 0.0 };
         for ahead in [1.0, -1.0] {
             let corners = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)].map(|(y, z)| DVec3::new(ahead, y, z));
-            let cut = CutView::of_alphas([0.0, 1.0, 0.0], 0.25);
+            let cut = MaskedTriangle::of_alphas([0.0, 1.0, 0.0], 0.25);
             let pierced = Pierced::new(cut, [0, 0], corners, equator);
             let span = [-0.4, 0.4];
             let mut solid = Vec::new();

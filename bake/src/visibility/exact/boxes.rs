@@ -16,7 +16,7 @@
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use crate::trace::bvh16::{Leaf, Node, Points, first_lanes};
+use crate::trace::bvh16::{Bvh16Leaf, Bvh16Node, Points, first_lanes};
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;
@@ -128,7 +128,7 @@ impl Wedge {
 }
 
 /// Which of a node's boxes are met: a bit set. `near2` gets their least squared distance from the axis.
-pub(super) fn node_met<S: Simd>(simd: S, node: &Node, wanted: &Wanted, near2: &mut [f32; 16]) -> u32 {
+pub(super) fn node_met<S: Simd>(simd: S, node: &Bvh16Node, wanted: &Wanted, near2: &mut [f32; 16]) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -141,7 +141,7 @@ pub(super) fn node_met<S: Simd>(simd: S, node: &Node, wanted: &Wanted, near2: &m
 }
 
 /// Which triangles of a leaf may hide something wanted: a bit set.
-pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Leaf, wanted: &Wanted) -> u32 {
+pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, wanted: &Wanted) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
@@ -161,7 +161,7 @@ struct Boxes<S: Simd> {
 
 /// A node's boxes in the arc's frame.
 #[inline(always)]
-fn turned<S: Simd>(simd: S, node: &Node, wanted: &Wanted) -> Boxes<S> {
+fn turned<S: Simd>(simd: S, node: &Bvh16Node, wanted: &Wanted) -> Boxes<S> {
     let x = f32x16::from_slice(simd, &node.centre[0]) - wanted.centre[0];
     let y = f32x16::from_slice(simd, &node.centre[1]) - wanted.centre[1];
     let z = f32x16::from_slice(simd, &node.centre[2]) - wanted.centre[2];

@@ -11,7 +11,7 @@
 
 use super::hide::Leg;
 use super::span::{Span, common, not_negative};
-use crate::trace::CutView;
+use crate::trace::MaskedTriangle;
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -25,7 +25,7 @@ pub(super) type Parts = SmallVec<[Span; 8]>;
 
 /// A triangle with holes, seen from a point along a leg. Each pair holds values at the leg's two ends.
 pub(super) struct Pierced<'a> {
-    cut: CutView<'a>,
+    cut: MaskedTriangle<'a>,
     /// For each corner, its weight.
     weights: [[f64; 2]; 3],
     /// Their sum, and their sums weighted by each texture coordinate.
@@ -35,7 +35,7 @@ pub(super) struct Pierced<'a> {
 
 impl<'a> Pierced<'a> {
     /// From the corners relative to the point.
-    pub fn new(cut: CutView<'a>, leg: &Leg, [a, b, c]: [DVec3; 3]) -> Self {
+    pub fn new(cut: MaskedTriangle<'a>, leg: &Leg, [a, b, c]: [DVec3; 3]) -> Self {
         let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|n| leg.along(n));
         let along = [cut.texel_uvs.map(|uv| uv.x), cut.texel_uvs.map(|uv| uv.y)].map(|uvs| blend(weights, uvs));
         Self { total: blend(weights, [1.0; 3]), along, weights, cut }

@@ -10,14 +10,14 @@
 
 /// A free rectangle, in texels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Gap {
+pub(super) struct FreeRect {
     pub x: u32,
     pub y: u32,
     pub width: u32,
     pub height: u32,
 }
 
-impl Gap {
+impl FreeRect {
     fn area(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
@@ -29,8 +29,8 @@ impl Gap {
 
 /// The free rectangles of a strip.
 #[derive(Debug)]
-pub(super) struct Gaps {
-    free: Vec<Gap>,
+pub(super) struct FreeSpace {
+    free: Vec<FreeRect>,
     /// Sides of the smallest shape still to come: narrower gaps are not kept.
     least: u32,
 }
@@ -38,14 +38,14 @@ pub(super) struct Gaps {
 /// Starts and ends of runs that are looked at when a ragged region is cut.
 const CUTS: usize = 48;
 
-impl Gaps {
+impl FreeSpace {
     pub fn new(least: u32) -> Self {
         Self { free: Vec::new(), least }
     }
 
     /// Takes room for a box out of the tightest gap; `None` if no gap holds it. The flag says that it lies on its side.
     pub fn take(&mut self, width: u32, height: u32, may_turn: bool) -> Option<(u32, u32, bool)> {
-        let fit = |gap: &Gap, (w, h): (u32, u32)| gap.holds(w, h).then(|| (gap.width - w).min(gap.height - h));
+        let fit = |gap: &FreeRect, (w, h): (u32, u32)| gap.holds(w, h).then(|| (gap.width - w).min(gap.height - h));
         let offers = self.free.iter().enumerate().flat_map(|(index, gap)| {
             let upright = fit(gap, (width, height)).map(|rest| (rest, index, false));
             let turned = if may_turn { fit(gap, (height, width)).map(|rest| (rest, index, true)) } else { None };
@@ -59,14 +59,14 @@ impl Gaps {
     }
 
     /// Returns what is left of a gap after a box was put into its corner.
-    fn split(&mut self, gap: Gap, width: u32, height: u32) {
+    fn split(&mut self, gap: FreeRect, width: u32, height: u32) {
         let (beside, above) = (gap.width - width, gap.height - height);
         let (right_height, top_width) = if beside < above { (height, gap.width) } else { (gap.height, width) };
-        self.keep(Gap { x: gap.x + width, y: gap.y, width: beside, height: right_height });
-        self.keep(Gap { x: gap.x, y: gap.y + height, width: top_width, height: above });
+        self.keep(FreeRect { x: gap.x + width, y: gap.y, width: beside, height: right_height });
+        self.keep(FreeRect { x: gap.x, y: gap.y + height, width: top_width, height: above });
     }
 
-    fn keep(&mut self, gap: Gap) {
+    fn keep(&mut self, gap: FreeRect) {
         if gap.holds(self.least, self.least) {
             self.free.push(gap);
         }
@@ -78,7 +78,7 @@ impl Gaps {
             return;
         }
         let Some((start, end, low, high)) = self.largest(columns) else { return };
-        self.keep(Gap { x: x + start as u32, y: low, width: (end - start) as u32, height: high - low });
+        self.keep(FreeRect { x: x + start as u32, y: low, width: (end - start) as u32, height: high - low });
         self.add_region(x, &columns[..start]);
         self.add_region(x + end as u32, &columns[end..]);
     }
@@ -96,7 +96,7 @@ impl Gaps {
                     break;
                 }
                 let end = (start + (end + 1) * stride).min(columns.len());
-                let gap = Gap { x: 0, y: low, width: (end - start) as u32, height: high - low };
+                let gap = FreeRect { x: 0, y: low, width: (end - start) as u32, height: high - low };
                 if gap.width >= self.least && best.is_none_or(|(area, _)| gap.area() > area) {
                     best = Some((gap.area(), (start, end, low, high)));
                 }
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_stair_is_cut_into_rectangles_within_it() {
         let columns: Vec<(u32, u32)> = (0..40).map(|c| (c / 4, 12)).collect();
-        let mut gaps = Gaps::new(2);
+        let mut gaps = FreeSpace::new(2);
         gaps.add_region(100, &columns);
         assert!(gaps.free.iter().map(|g| g.area()).sum::<u64>() >= 150, "{:?}", gaps.free);
         for gap in &gaps.free {
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_gap_is_used_up_without_overlap() {
-        let mut gaps = Gaps::new(1);
+        let mut gaps = FreeSpace::new(1);
         gaps.add_region(0, &[(0, 10); 10]);
         let mut taken = [[false; 10]; 10];
         let mut count = 0;
