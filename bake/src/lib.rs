@@ -44,4 +44,4 @@ pub mod texels;
 pub mod trace;
 pub mod visibility;
 
-pub use bake::{BakeError, BakeReport, Prepared, bake, prepare, sun_path};
+pub use bake::{Bake, BakeError, BakeReport, Prepared, bake, bake_scene, prepare, sun_path};

@@ -7,7 +7,7 @@ use crate::ambient::{
 };
 use crate::atlas::{self, PageSamples, PageSize, Sample};
 use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
-use crate::disk::write::{SetWriter, VERTICES_FILE};
+use crate::disk::write::VERTICES_FILE;
 use crate::glb;
 use crate::progress::BakeStage;
 use crate::scene::ShadingNormals;
@@ -49,8 +49,8 @@ impl PageBaker<'_> {
         baked.map(Some)
     }
 
-    /// Bakes openness of vertices into a scene of their own, if that is asked for.
-    pub(super) fn bake_vertices(&mut self, writer: &mut SetWriter) -> Result<Option<VertexEntry>, BakeError> {
+    /// Bakes ambient visibility of vertices into a scene of its own, if that is asked for.
+    pub(super) fn bake_vertices(&mut self) -> Result<Option<(Vec<u8>, VertexEntry)>, BakeError> {
         let Some((sky, attribute)) = self.lights.sky.and_then(|sky| Some((sky, sky.request.vertices?))) else {
             return Ok(None);
         };
@@ -60,9 +60,8 @@ impl PageBaker<'_> {
             || ambient_visibility_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
         let (open, rays) = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
         self.sky_account.rays += rays;
-        let write = || writer.write_vertices(&glb::write_vertices(scene, attribute, &open)?).map_err(BakeError::from);
-        timed(&mut self.stats.seconds.write, write)?;
-        Ok(Some(VertexEntry { file: VERTICES_FILE.into(), attribute: attribute.name().into() }))
+        let glb = glb::write_vertices(scene, attribute, &open)?;
+        Ok(Some((glb, VertexEntry { file: VERTICES_FILE.into(), attribute: attribute.name().into() })))
     }
 
     fn bake_sky(

@@ -1,6 +1,7 @@
 //! A bake from end to end: the flow of the crate, one stage after the other.
 
 mod ambient;
+mod baked;
 mod entries;
 mod layout;
 mod leave_out;
@@ -22,6 +23,8 @@ use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::Engine;
 use ambient::Sky;
+pub use baked::Bake;
+use baked::{PageFiles, PageSink, Rest, stored_bits, write_rest};
 use entries::{instance_entries, loss_warnings, manifest_of};
 pub(crate) use layout::unwrap_somehow;
 use layout::{BYTES_PER_SAMPLE, check_memory};
@@ -148,7 +151,12 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     progress.start(BakeStage::Load, 0);
     let started = Instant::now();
     let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
-    let mut scene = scene::load(scene_file, &limits)?;
+    let prepared = prepare_scene(scene::load(scene_file, &limits)?, settings)?;
+    Ok(Prepared { load_seconds: started.elapsed().as_secs_f64(), ..prepared })
+}
+
+/// Decides what to bake of a scene.
+fn prepare_scene(mut scene: Scene, settings: &BakeSettings) -> Result<Prepared, BakeError> {
     leave_out(&mut scene, &settings.leave_out)?;
     let mut warnings = scene.warnings.clone();
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
@@ -156,7 +164,7 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
     let no_sun = if is_lamp_alone { "a lamp is baked instead" } else { "the sun does not rise" };
     let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
-    Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: started.elapsed().as_secs_f64() })
+    Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: 0.0 })
 }
 
 /// The lamp that is asked for, beside the sun or instead of it. Beside a sun it takes as long as that.
@@ -189,10 +197,31 @@ pub fn bake(
     progress: &dyn Progress,
 ) -> Result<BakeReport, BakeError> {
     // First of all the folder: nobody should wait for a bake that cannot be kept.
-    let writer = SetWriter::begin(target, force)?;
+    let mut writer = SetWriter::begin(target, force)?;
     in_pool(settings.threads, || {
         let prepared = prepare(scene_file, settings, progress)?;
-        bake_prepared(&prepared, writer, settings, progress)
+        let mut files = PageFiles { writer: &mut writer, bits: stored_bits(settings) };
+        let Rest { manifest, scene_glb, vertices_glb, warnings } =
+            bake_prepared(&prepared, &mut files, settings, progress)?;
+        let manifest = write_rest(writer, manifest, &scene_glb, vertices_glb.as_deref())?;
+        Ok(BakeReport { manifest, warnings })
+    })?
+}
+
+/// Bakes a scene in memory: what [`bake`] makes, kept instead of written. All pages are held at once, where [`bake`] holds one.
+/// The scene is copied, because [`BakeSettings::leave_out`] changes its materials.
+///
+/// # Errors
+///
+/// As [`bake`], save those of reading and writing files.
+pub fn bake_scene(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Bake, BakeError> {
+    in_pool(settings.threads, || {
+        let prepared = prepare_scene(scene.clone(), settings)?;
+        let mut pages = Vec::new();
+        let rest = bake_prepared(&prepared, &mut pages, settings, progress)?;
+        let Rest { manifest, scene_glb, vertices_glb, warnings } = rest;
+        let Prepared { path, lamp, .. } = prepared;
+        Ok(Bake { manifest, path, lamp, bits: stored_bits(settings), pages, scene_glb, vertices_glb, warnings })
     })?
 }
 
@@ -203,10 +232,10 @@ fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T
 
 fn bake_prepared(
     prepared: &Prepared,
-    mut writer: SetWriter,
+    sink: &mut dyn PageSink,
     settings: &BakeSettings,
     progress: &dyn Progress,
-) -> Result<BakeReport, BakeError> {
+) -> Result<Rest, BakeError> {
     let Prepared { scene, path, lamp, plan, .. } = prepared;
     let settings = &BakeSettings {
         lane_count: plan.lane_count(settings.lane_count),
@@ -240,12 +269,10 @@ fn bake_prepared(
     let sky = request.zip(engine.as_ref()).map(|(request, engine)| Sky { engine, request, normals: &normals });
     let lights = Lights { sun, lamp, sky };
     let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, progress, seconds);
-    let atlases = pages.bake_all(&mut writer)?;
+    let atlases = pages.bake_all(sink)?;
     let occlusion = (!pages.occlusion.is_empty()).then(|| Occlusion { atlas, pages: &pages.occlusion });
     let written = glb::write_glb(scene, &atlas.layouts, occlusion)?;
-    timed(&mut pages.stats.seconds.write, || writer.write_scene(&written.bytes))?;
-
-    let vertices = pages.bake_vertices(&mut writer)?;
+    let (vertices_glb, vertices) = pages.bake_vertices()?.unzip();
     let needed = layers_needed(&pages, &atlases);
     let mut manifest = finished(pages, prepared, &lights, settings);
     if let Some(ambient) = &mut manifest.ambient {
@@ -253,20 +280,18 @@ fn bake_prepared(
     }
     let manifest = Manifest {
         scene: SceneEntry { sha256: Some(scene::sha256(&written.bytes)), ..manifest.scene },
-        stats: Stats { bytes: writer.bytes(), ..manifest.stats },
         atlases,
         instances: instance_entries(scene, atlas, &written),
         effects: plan.clone().settled(needed).entries(),
         ..manifest
     };
     check_cancelled(progress)?;
-    writer.finish(&manifest)?;
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warnings(&manifest, settings));
     let of_sky = manifest.ambient.as_ref().zip(settings.ambient.as_ref());
     warnings.extend(of_sky.into_iter().flat_map(|(entry, request)| ambient::warnings(entry, request)));
-    Ok(BakeReport { manifest, warnings })
+    Ok(Rest { manifest, scene_glb: written.bytes, vertices_glb, warnings })
 }
 
 fn lamp_engine<'a>(

@@ -1,12 +1,12 @@
 //! The pages of a bake, one after the other, so that only one is in memory.
 
 use super::ambient::{Sky, SkyAccount};
+use super::baked::PageSink;
 use super::light::{Account, LaneEncoders, LightJob};
 use super::{BakeError, check_cancelled, timed};
-use crate::ambient::AmbientPage;
 use crate::atlas::{self, Atlas, PageSamples};
+use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
-use crate::disk::write::SetWriter;
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{LaneMaps, PageMaps};
@@ -82,31 +82,21 @@ impl<'a> PageBaker<'a> {
         }
     }
 
-    pub fn bake_all(&mut self, writer: &mut SetWriter) -> Result<Vec<AtlasEntry>, BakeError> {
+    /// Bakes every page into `sink`, and says what the manifest should say of each.
+    pub fn bake_all(&mut self, sink: &mut dyn PageSink) -> Result<Vec<AtlasEntry>, BakeError> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
-        for index in 0..self.atlas.pages.len() {
-            let (maps, ambient) = self.bake(index)?;
+        for (index, &size) in self.atlas.pages.iter().enumerate() {
+            let page = self.bake(index)?;
             self.progress.start(BakeStage::Write, 0);
-            let loss_map = self.loss_map.take();
-            let write = || {
-                let entry = writer.write_page(index, &maps, self.settings.bits)?;
-                let entry = match (&self.settings.ambient, &ambient, &maps.ambient) {
-                    (Some(request), Some(page), Some(maps)) => {
-                        writer.write_ambient(index, page, maps, request, entry)?
-                    }
-                    _ => entry,
-                };
-                let loss_map = loss_map.map(|map| writer.write_loss_map(index, &map)).transpose()?;
-                Ok::<_, BakeError>(AtlasEntry { loss_map, ..entry })
-            };
-            entries.push(timed(&mut self.stats.seconds.write, write)?);
-            self.occlusion
-                .extend(maps.ambient.as_ref().map(|ambient| OcclusionPage::new(self.atlas.pages[index], ambient)));
+            self.occlusion.extend(page.maps.ambient.as_ref().map(|ambient| OcclusionPage::new(size, ambient)));
+            let entry = page.entry(index);
+            timed(&mut self.stats.seconds.write, || sink.take(page, &entry))?;
+            entries.push(entry);
         }
         Ok(entries)
     }
 
-    fn bake(&mut self, index: usize) -> Result<(PageMaps, Option<AmbientPage>), BakeError> {
+    fn bake(&mut self, index: usize) -> Result<BakedPage, BakeError> {
         let size = self.atlas.pages[index];
         let started = Instant::now();
         let samples = atlas::sample_page(self.scene, self.geometry, self.atlas, index as u32);
@@ -124,10 +114,12 @@ impl<'a> PageBaker<'a> {
         self.lamp = account;
         check_cancelled(self.progress)?;
         let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
-        let page = self.bake_ambient(index, &samples, &order)?;
-        let ambient = page.as_ref().map(AmbientPage::encoded);
-        let lanes = lanes.unwrap_or_default();
-        Ok((PageMaps { width: size.width, height: size.height, lanes, lamp, ambient }, page))
+        let numbers = self.bake_ambient(index, &samples, &order)?;
+        let request = self.settings.ambient.as_ref();
+        let ambient = numbers.as_ref().zip(request).map(|(page, request)| page.encoded().rounded_to(request.bits));
+        let maps = PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient };
+        let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));
+        Ok(BakedPage { maps, ambient_numbers, loss_map: self.loss_map.take() })
     }
 
     /// Finds and encodes when the texels of a page see a light.

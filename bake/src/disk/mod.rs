@@ -4,9 +4,11 @@ mod atlas;
 mod exr_file;
 pub mod folder;
 pub mod manifest;
+mod page;
 pub mod read;
 pub mod write;
 mod write_ambient;
 mod write_loss;
 
 pub use exr_file::write_exr;
+pub use page::BakedPage;

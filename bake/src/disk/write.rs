@@ -4,9 +4,10 @@
 //! whatever reason, leaves the old set or none.
 
 use super::folder::{FolderKind, FolderWriter};
-use super::manifest::{AtlasEntry, LampMapsEntry, LaneEntry, LayerEntry, Manifest};
+use super::manifest::{AtlasEntry, Manifest};
+use super::page::BakedPage;
 use super::read::MANIFEST_FILE;
-use crate::maps::{Bits, LaneMaps, LayerMaps, PageMaps};
+use crate::maps::{Bits, StoredBits};
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -46,24 +47,23 @@ impl SetWriter {
         self.write_file(VERTICES_FILE, |file| file.write_all(glb))
     }
 
-    /// Writes a page's textures and says what the manifest should say of them.
-    pub fn write_page(&mut self, index: usize, maps: &PageMaps, bits: Bits) -> Result<AtlasEntry, WriteError> {
-        let mut textures: Vec<(String, &[[u16; 4]])> = Vec::new();
-        let lanes = maps.lanes.iter().enumerate().map(|(k, LaneMaps { lane, layers })| LaneEntry {
-            offset_deg: lane.offset_rad.to_degrees(),
-            weight: lane.weight,
-            layers: named_layers(&format!("page{index}_lane{k}"), layers, &mut textures),
-        });
-        let lanes = lanes.collect();
-        let lamp = maps
-            .lamp
-            .as_ref()
-            .map(|layers| LampMapsEntry { layers: named_layers(&format!("page{index}_lamp"), layers, &mut textures) });
-        let size = (maps.width, maps.height);
+    /// Writes a page's files, under the names that `entry` gives them ([`BakedPage::entry`]).
+    pub fn write_page(&mut self, entry: &AtlasEntry, page: &BakedPage, bits: StoredBits) -> Result<(), WriteError> {
+        let lanes = entry.lanes.iter().map(|lane| &lane.layers).zip(page.maps.lanes.iter().map(|lane| &lane.layers));
+        let lamp = entry.lamp.as_ref().map(|lamp| &lamp.layers).zip(page.maps.lamp.as_ref());
+        let layers = lanes.chain(lamp).flat_map(|(names, layers)| names.iter().zip(layers));
+        let textures: Vec<(&String, &[[u16; 4]])> = layers
+            .flat_map(|(name, layer)| [(&name.rise, layer.rise.as_slice()), (&name.fall, layer.fall.as_slice())])
+            .collect();
+        let size = (entry.width, entry.height);
         let written: Result<Vec<u64>, WriteError> =
-            textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits)).collect();
+            textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits.times)).collect();
         self.bytes += written?.iter().sum::<u64>();
-        Ok(AtlasEntry { width: maps.width, height: maps.height, lanes, lamp, ..AtlasEntry::default() })
+        self.write_ambient(entry, page, bits.ambient)?;
+        if let (Some(names), Some(map)) = (&entry.loss_map, &page.loss_map) {
+            self.write_loss_map(names, map)?;
+        }
+        Ok(())
     }
 
     /// Bytes written so far.
@@ -107,21 +107,6 @@ impl SetWriter {
     }
 }
 
-/// Names the textures of layers, and adds each with its name to `textures`.
-fn named_layers<'a>(
-    stem: &str,
-    layers: &'a [LayerMaps],
-    textures: &mut Vec<(String, &'a [[u16; 4]])>,
-) -> Vec<LayerEntry> {
-    let mut entries = Vec::with_capacity(layers.len());
-    for (l, LayerMaps { rise, fall }) in layers.iter().enumerate() {
-        let [rise_file, fall_file] = ["rise", "fall"].map(|what| format!("{stem}_layer{l}_{what}.png"));
-        textures.extend([(rise_file.clone(), rise.as_slice()), (fall_file.clone(), fall.as_slice())]);
-        entries.push(LayerEntry { rise: rise_file, fall: fall_file });
-    }
-    entries
-}
-
 /// Codes as PNG stores them: one byte, or two with the higher first.
 fn bytes_of(codes: &[[u16; 4]], bits: Bits) -> Vec<u8> {
     match bits {
@@ -134,7 +119,7 @@ fn bytes_of(codes: &[[u16; 4]], bits: Bits) -> Vec<u8> {
 mod tests {
     use super::super::{manifest, read};
     use super::*;
-    use crate::maps::Lane;
+    use crate::maps::{Lane, LaneMaps, LayerMaps, PageMaps};
 
     fn maps(bits: Bits) -> PageMaps {
         let mut layer = LayerMaps::unlit(6, bits);
@@ -183,8 +168,10 @@ mod tests {
 
     fn write(target: &Path, force: bool, bits: Bits) -> Result<(), WriteError> {
         let mut writer = SetWriter::begin(target, force)?;
-        let atlas = writer.write_page(0, &maps(bits), bits)?;
-        writer.finish(&manifest(atlas, bits))
+        let page = BakedPage { maps: maps(bits), ambient_numbers: None, loss_map: None };
+        let entry = page.entry(0);
+        writer.write_page(&entry, &page, StoredBits { times: bits, ambient: bits })?;
+        writer.finish(&manifest(entry, bits))
     }
 
     /// B15.

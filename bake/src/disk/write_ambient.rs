@@ -2,66 +2,58 @@
 //! numbers.
 
 use super::exr_file::write_exr;
-use super::manifest::{AtlasEntry, SkyMapsEntry};
+use super::manifest::AtlasEntry;
+use super::page::BakedPage;
 use super::write::{SetWriter, WriteError};
 use crate::ambient::{AmbientPage, Side};
 use crate::maps::{AmbientMaps, AmbientSide, Bits, in_8_bits};
-use crate::settings::AmbientRequest;
 use std::io::{Result, Seek, Write};
 
 type WriteResult<T> = std::result::Result<T, WriteError>;
 
 impl SetWriter {
-    /// Writes the ambient light of page `index` and adds it to what the manifest says of the page.
-    pub fn write_ambient(
-        &mut self,
-        index: usize,
-        page: &AmbientPage,
-        maps: &AmbientMaps,
-        request: &AmbientRequest,
-        entry: AtlasEntry,
-    ) -> WriteResult<AtlasEntry> {
+    /// Writes the ambient light of a page, if it has any.
+    pub(super) fn write_ambient(&mut self, entry: &AtlasEntry, page: &BakedPage, bits: Bits) -> WriteResult<()> {
+        let (Some(ao), Some(AmbientMaps { front, back })) = (&entry.ao, &page.maps.ambient) else { return Ok(()) };
         let size = (entry.width, entry.height);
-        let ao = format!("page{index}_ao.png");
-        self.write_file(&ao, |file| write_occlusion(maps, size, request.bits, file))?;
-        let of_side = |side: &Option<AmbientSide>| side.clone().unwrap_or_default();
-        let back = of_side(&maps.back);
-        let bent = self.write_bent(format!("page{index}_bent.png"), &maps.front, size)?;
-        let bent_back = self.write_bent(format!("page{index}_bent_back.png"), &back, size)?;
-        let front = self.write_sky(&format!("page{index}_sky"), &maps.front, size)?;
-        let back = self.write_sky(&format!("page{index}_sky_back"), &back, size)?;
-        let sky = front.map(|front| SkyMapsEntry { basis: "sh2".into(), front, back });
-        let ambient_exr = request.exr.then(|| format!("page{index}_ambient.exr"));
-        if let Some(name) = &ambient_exr {
-            self.write_file(name, |file| write_numbers(page, file))?;
+        self.write_file(ao, |file| write_occlusion(front, back.as_ref(), size, bits, file))?;
+        let names = [entry.sky.as_ref().map(|sky| &sky.front), entry.sky.as_ref().and_then(|sky| sky.back.as_ref())];
+        let sides = [(&entry.bent, names[0], Some(front)), (&entry.bent_back, names[1], back.as_ref())];
+        for (bent_name, sky_names, side) in sides {
+            if let Some((name, bent)) = bent_name.as_ref().zip(side.and_then(|side| side.bent.as_ref())) {
+                self.write_file(name, |file| write_rgb16(bent.iter().copied(), size, file))?;
+            }
+            if let Some((names, sky)) = sky_names.zip(side.and_then(|side| side.sky.as_ref())) {
+                self.write_sky(names, sky, size)?;
+            }
         }
-        Ok(AtlasEntry { ao: Some(ao), bent, bent_back, sky, ambient_exr, ..entry })
+        if let Some((name, numbers)) = entry.ambient_exr.as_ref().zip(page.ambient_numbers.as_ref()) {
+            self.write_file(name, |file| write_numbers(numbers, file))?;
+        }
+        Ok(())
     }
 
-    fn write_bent(&mut self, name: String, side: &AmbientSide, size: (u32, u32)) -> WriteResult<Option<String>> {
-        let Some(bent) = &side.bent else { return Ok(None) };
-        self.write_file(&name, |file| write_rgb16(bent.iter().copied(), size, file))?;
-        Ok(Some(name))
-    }
-
-    fn write_sky(&mut self, stem: &str, side: &AmbientSide, size: (u32, u32)) -> WriteResult<Option<[String; 3]>> {
-        let Some(sky) = &side.sky else { return Ok(None) };
-        let names = [0, 1, 2].map(|k| format!("{stem}{k}.png"));
+    fn write_sky(&mut self, names: &[String; 3], sky: &[[u16; 9]], size: (u32, u32)) -> WriteResult<()> {
         for (k, name) in names.iter().enumerate() {
             let three = sky.iter().map(|codes| [codes[3 * k], codes[3 * k + 1], codes[3 * k + 2]]);
             self.write_file(name, |file| write_rgb16(three, size, file))?;
         }
-        Ok(Some(names))
+        Ok(())
     }
 }
 
 /// Grey, or where there are backs red for viewers, green for fronts, blue for backs.
-fn write_occlusion(maps: &AmbientMaps, size: (u32, u32), bits: Bits, file: impl Write) -> Result<()> {
-    let front = &maps.front.open;
-    let (color, codes): (_, Vec<u16>) = match &maps.back {
-        None => (png::ColorType::Grayscale, front.clone()),
+fn write_occlusion(
+    front: &AmbientSide,
+    back: Option<&AmbientSide>,
+    size: (u32, u32),
+    bits: Bits,
+    file: impl Write,
+) -> Result<()> {
+    let (color, codes): (_, Vec<u16>) = match back {
+        None => (png::ColorType::Grayscale, front.open.clone()),
         Some(back) => {
-            (png::ColorType::Rgb, front.iter().zip(&back.open).flat_map(|(&f, &b)| [f.max(b), f, b]).collect())
+            (png::ColorType::Rgb, front.open.iter().zip(&back.open).flat_map(|(&f, &b)| [f.max(b), f, b]).collect())
         }
     };
     write_png(&codes, color, size, bits, file)

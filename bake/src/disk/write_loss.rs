@@ -7,12 +7,14 @@ use crate::loss_map::LossMap;
 use std::io::{Result, Seek, Write};
 
 impl SetWriter {
-    /// Writes where page `index` lost minutes and says what the manifest should say of it.
-    pub fn write_loss_map(&mut self, index: usize, map: &LossMap) -> std::result::Result<LossMapEntry, WriteError> {
-        let [picture, numbers] = ["png", "exr"].map(|kind| format!("lost_minutes.{index}.{kind}"));
-        self.write_file(&picture, |file| write_picture(map, file))?;
-        self.write_file(&numbers, |file| write_numbers(map, file))?;
-        Ok(LossMapEntry { picture, numbers, scale: "sqrt".into(), scale_max_min: map.scale_max_min() })
+    /// Writes where a page lost minutes.
+    pub(super) fn write_loss_map(
+        &mut self,
+        names: &LossMapEntry,
+        map: &LossMap,
+    ) -> std::result::Result<(), WriteError> {
+        self.write_file(&names.picture, |file| write_picture(map, file))?;
+        self.write_file(&names.numbers, |file| write_numbers(map, file))
     }
 }
 

@@ -3,6 +3,8 @@
 //! Openness is a code of 16 bits, 0 closed and 65535 open. Numbers between -1 and 1 (bent normals, sky coefficients) are codes
 //! with zero in the middle: q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
 
+use super::Bits;
+
 /// Ambient light of a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AmbientMaps {
@@ -22,6 +24,22 @@ pub struct AmbientSide {
     /// Sky visibility in spherical harmonics ([`crate::ambient::harmonics`]), if the set has it.
     pub sky: Option<Vec<[u16; 9]>>,
 }
+
+impl AmbientMaps {
+    /// The same with ambient visibility as a texture of so many bits keeps it. Other numbers always have 16 bits.
+    pub fn rounded_to(mut self, bits: Bits) -> Self {
+        if bits == Bits::Eight {
+            let sides = std::iter::once(&mut self.front).chain(&mut self.back);
+            sides
+                .flat_map(|side| &mut side.open)
+                .for_each(|code| *code = u16::from(in_8_bits(*code)) * CODES_OF_8_BITS);
+        }
+        self
+    }
+}
+
+/// Codes of 16 bits in one of 8.
+const CODES_OF_8_BITS: u16 = 257;
 
 /// The code of an openness.
 pub fn encode_open(open: f32) -> u16 {
@@ -66,5 +84,13 @@ mod tests {
     #[test]
     fn codes_of_16_bits_round_to_the_nearest_of_8() {
         assert_eq!([0, 65_535, 257, 128, 129, 32_768].map(in_8_bits), [0, 255, 1, 0, 1, 128]);
+    }
+
+    #[test]
+    fn rounding_to_8_bits_twice_is_rounding_once() {
+        let all = AmbientSide { open: (0..=u16::MAX).collect(), ..AmbientSide::default() };
+        let once = AmbientMaps { front: all, back: None }.rounded_to(Bits::Eight);
+        assert!((0..=u16::MAX).zip(&once.front.open).all(|(code, &rounded)| in_8_bits(code) == in_8_bits(rounded)));
+        assert_eq!(once.clone().rounded_to(Bits::Eight), once);
     }
 }

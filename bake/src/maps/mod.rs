@@ -64,6 +64,15 @@ impl Bits {
     }
 }
 
+/// Bits of the numbers in a set's textures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StoredBits {
+    /// Of times.
+    pub times: Bits,
+    /// Of ambient visibility. Bent normals and sky coefficients always have 16.
+    pub ambient: Bits,
+}
+
 /// A rise and fall pair of textures: row order, one RGBA texel an entry. Codes of either depth are held in 16 bits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayerMaps {

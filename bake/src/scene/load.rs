@@ -30,14 +30,27 @@ use std::{
 pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let budget = MemoryBudget::new(limits);
     let bytes = container::read_file(path, &budget, "check the path and its permissions")?;
-    let Container { json, binary } = Container::parse(path, &bytes, &budget)?;
+    parse_within(path, &bytes, &budget)
+}
+
+/// Reads the bytes of a glTF or GLB file. Messages name it by `path`, and files that it names are looked for beside that.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn parse(path: &Path, bytes: &[u8], limits: &LoadLimits) -> Result<Scene, LoadError> {
+    parse_within(path, bytes, &MemoryBudget::new(limits))
+}
+
+fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scene, LoadError> {
+    let Container { json, binary } = Container::parse(path, bytes, budget)?;
     let doc = Document { root: json };
     refuse::check_required(&doc)?;
     let mut log = WarningLog::default();
-    let mut fetcher = Fetcher::new(path, &bytes, &budget);
+    let mut fetcher = Fetcher::new(path, bytes, budget);
     let buffers = Buffers::read(&doc, binary, &mut fetcher)?;
     let tree = nodes::read(&doc, &mut log)?;
-    let reader = Reader { doc: &doc, buffers: &buffers, budget: &budget };
+    let reader = Reader { doc: &doc, buffers: &buffers, budget };
     let mut drawn = primitives::read(reader, &tree, &mut log)?;
     let triangle_count: u64 = drawn.draws.iter().map(|&(_, mesh)| triangle_count(&drawn, mesh)).sum();
     budget.take(triangle_count, BYTES_PER_TRIANGLE, || format!("placing {triangle_count} triangles"))?;
@@ -45,7 +58,7 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let drafts = materials::read(&doc, &mut drawn, &mut log)?;
     let needed = materials::needed_images(&drafts);
-    let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, &budget, &needed)?;
+    let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, budget, &needed)?;
     let materials = materials::finish(drafts, &decoded, &drawn, &mut log)?;
     if doc.root.get("animations").is_some() {
         log.warn("they are not played; every node stands where the file puts it", "animations");

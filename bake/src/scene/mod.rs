@@ -34,7 +34,7 @@ mod triangles;
 pub use error::{ErrorClass, LoadError};
 pub use geometry::{Geometry, SurfaceTriangle};
 pub use limits::LoadLimits;
-pub use load::load;
+pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
 pub use resources::sha256;
 pub use shading::ShadingNormals;
