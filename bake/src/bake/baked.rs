@@ -7,6 +7,7 @@ use crate::disk::write::{SetWriter, WriteError};
 use crate::lamp::LampPath;
 use crate::maps::{Bits, StoredBits};
 use crate::scene::{self, LoadError, LoadLimits, Scene};
+use crate::settings::BakeSettings;
 use crate::sun::SunPath;
 use std::path::Path;
 use std::time::Instant;
@@ -112,7 +113,7 @@ impl PageSink for PageFiles<'_> {
 }
 
 /// Depth of what a bake with these settings stores.
-pub(super) fn stored_bits(settings: &crate::settings::BakeSettings) -> StoredBits {
+pub(super) fn stored_bits(settings: &BakeSettings) -> StoredBits {
     StoredBits { times: settings.bits, ambient: settings.ambient.map_or(Bits::Sixteen, |request| request.bits) }
 }
 
@@ -122,8 +123,9 @@ mod tests {
     use crate::ambient::AmbientSettings;
     use crate::atlas::{self, AtlasSettings};
     use crate::disk::read;
+    use crate::maps::PageMaps;
     use crate::progress::Silent;
-    use crate::settings::{AmbientRequest, BakeSettings, SunRequest, VertexAttribute};
+    use crate::settings::{AmbientRequest, SunRequest, VertexAttribute};
     use crate::sun::DayRequest;
     use crate::testing::{SceneBuilder, block, floor, opaque};
     use crate::{bake, bake_scene, glb};
@@ -132,7 +134,7 @@ mod tests {
 
     /// A box above a two-sided floor, as a file.
     fn scene_file(folder: &Path) -> std::path::PathBuf {
-        let two_sided = crate::scene::Material { is_double_sided: true, ..opaque() };
+        let two_sided = scene::Material { is_double_sided: true, ..opaque() };
         let scene = SceneBuilder::new()
             .soup_of(&floor(Vec2::ZERO, Vec2::splat(4.0), 0.0), two_sided)
             .soup(&block(Vec3::new(1.0, 0.5, 1.0), Vec3::new(2.0, 2.0, 3.0)))
@@ -185,18 +187,16 @@ mod tests {
             let file = scene_file(folder.path());
             let settings = settings(bits);
             let report = bake(&file, &by_command, false, &settings, &Silent).unwrap();
-            let scene = crate::scene::load(&file, &LoadLimits { max_memory_bytes: 1 << 30 }).unwrap();
+            let scene = scene::load(&file, &LoadLimits { max_memory_bytes: 1 << 30 }).unwrap();
             let baked = bake_scene(&scene, &settings, &Silent).unwrap();
 
             let set = read::read(&by_command).unwrap();
             let unwritten = Stats { bytes: 0, ..set.manifest.stats.clone() };
             assert_eq!(timeless(&baked.manifest), timeless(&Manifest { stats: unwritten, ..set.manifest.clone() }));
-            let maps = |page: &BakedPage| crate::maps::PageMaps { lanes: Vec::new(), ..page.maps.clone() };
-            let without_lanes =
-                |page: &crate::maps::PageMaps| crate::maps::PageMaps { lanes: Vec::new(), ..page.clone() };
+            let maps = |page: &BakedPage| PageMaps { lanes: Vec::new(), ..page.maps.clone() };
+            let without_lanes = |page: &PageMaps| PageMaps { lanes: Vec::new(), ..page.clone() };
             assert!(baked.pages.iter().map(maps).eq(set.pages.iter().map(without_lanes)));
-            let layers =
-                |page: &crate::maps::PageMaps| page.lanes.iter().map(|lane| lane.layers.clone()).collect::<Vec<_>>();
+            let layers = |page: &PageMaps| page.lanes.iter().map(|lane| lane.layers.clone()).collect::<Vec<_>>();
             assert!(baked.pages.iter().map(|page| layers(&page.maps)).eq(set.pages.iter().map(layers)));
             assert_eq!((baked.bits.times, &baked.warnings), (set.bits, &report.warnings));
 
