@@ -11,9 +11,9 @@ mod common;
 use common::{Anything, write};
 use std::path::Path;
 use std::time::Instant;
+use sunbake::maps::{Bits, GpuTexel, PageMaps};
 use sunbake::sun::clock_text;
 use sunbake_runtime::light::{LUMINANCE, codes_from_display, display_from_light};
-use sunbake_runtime::playback::{ambient_bytes, page_variant};
 use sunbake_runtime::sheet::{Table, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique};
 use sunbake_runtime::texture::srgb_from_linear;
@@ -59,8 +59,13 @@ fn draw(set: &Path, model: AmbientModel, t: f64) -> Result<Column, Anything> {
     let both = technique.color(&shot, &moment)?;
     let seconds = start.elapsed().as_secs_f64();
     let sky = technique.color(&shot, &moment.without_sun())?;
-    let bytes = stage.pages.iter().map(|page| ambient_bytes(&page_variant(page, stage.bits, 0.0))).max().unwrap_or(0);
+    let bytes = stage.pages.iter().map(|page| ambient_bytes(page, stage.bits)).max().unwrap_or(0);
     Ok(Column { sky, both, foot: format!("{bytes} bytes a texel, {seconds:.2} s") })
+}
+
+/// Bytes of ambient light for each texel.
+fn ambient_bytes(page: &PageMaps, bits: Bits) -> u64 {
+    GpuTexel { layers: 0, ..page.gpu_texel(bits) }.bytes()
 }
 
 fn table(columns: &[Column], clock: &str) -> Table {

@@ -7,7 +7,8 @@ use glam::{IVec2, Vec2, Vec3};
 use sunbake::ambient::harmonics;
 use sunbake::atlas::{Footprint, PageSize};
 use sunbake::maps::{
-    AmbientMaps, AmbientSide, Bits, PageMaps, decode_open, decode_signed, hard_visibility, soft_visibility,
+    AmbientMaps, AmbientSide, AmbientTextures, Bits, PageMaps, decode_open, decode_signed, hard_visibility,
+    soft_visibility,
 };
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
@@ -29,25 +30,14 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
     }
 }
 
-/// The best that a page's maps of ambient light allow.
+/// The most detailed model that a page's maps of ambient light allow.
 fn ambient_model(page: &PageMaps) -> AmbientModel {
-    match &page.ambient {
-        None => AmbientModel::Hemisphere,
-        Some(ambient) if ambient.front.sky.is_some() => AmbientModel::Sky,
-        Some(ambient) if ambient.front.bent.is_some() => AmbientModel::Bent,
-        Some(_) => AmbientModel::Occlusion,
+    match AmbientTextures::of(page) {
+        AmbientTextures::None => AmbientModel::Hemisphere,
+        AmbientTextures::Occlusion => AmbientModel::Occlusion,
+        AmbientTextures::Bent => AmbientModel::Bent,
+        AmbientTextures::Sky => AmbientModel::Sky,
     }
-}
-
-/// Bytes a texel that the model of ambient light reads, as a GPU holds them.
-pub fn ambient_bytes(variant: &PageVariant) -> u64 {
-    let a_side = match variant.ambient {
-        AmbientModel::Hemisphere => 0,
-        AmbientModel::Occlusion => 2,
-        AmbientModel::Bent => 2 + 8,
-        AmbientModel::Sky => 3 * 8,
-    };
-    a_side * if variant.has_backs { 2 } else { 1 }
 }
 
 /// A page ready to be evaluated.

@@ -6,7 +6,8 @@ use sunbake::maps::{AmbientMaps, AmbientSide, Bits, LayerMaps};
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
 use sunbake::sun::SunPath;
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
-use sunbake_runtime::gpu::{Census, Gpu, Output, VolumeSettings, baked_plan, maps_plan, volumes_plan};
+use sunbake_runtime::gpu::{Gpu, Output, VolumeSettings, baked_plan, maps_plan, volumes_plan};
+use sunbake_runtime::plan::Census;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{gpu, lamp_at};
@@ -91,7 +92,11 @@ fn texels(stage: &Stage) -> usize {
 
 /// The names of the effects that are on in one plan and off in another.
 fn turned_on<'a>(plan: &'a DrawPlan, other: &DrawPlan) -> Vec<&'a str> {
-    plan.needs.iter().filter(|need| need.is_on && !other.is_on(need.effect)).map(|need| need.effect).collect()
+    plan.needs
+        .iter()
+        .filter(|need| need.is_on && !other.is_on(need.effect.name()))
+        .map(|need| need.effect.name())
+        .collect()
 }
 
 #[test]
@@ -112,7 +117,7 @@ fn a_box_under_a_point_sun_builds_the_least() {
         ..Census::default()
     };
     assert_eq!(found, least);
-    let on: Vec<&str> = plan.needs.iter().filter(|need| need.is_on).map(|need| need.effect).collect();
+    let on: Vec<&str> = plan.needs.iter().filter(|need| need.is_on).map(|need| need.effect.name()).collect();
     assert_eq!(on, ["depth-pass", "light-pass", "sky-background", "sun-times", "16-bit-times"]);
     // A picture of visibility is spared the sky.
     assert_eq!(baked(&gpu, &stage, Output::Visibility).0, Census { pipelines: 2, ..least });
@@ -421,7 +426,7 @@ fn every_verdict_says_why_what_it_costs_and_what_turns_it_over() {
             assert!(plan.is_on("lamp") && plan.needs.len() > 2, "{}", technique.name());
             for need in &plan.needs {
                 let is_said = |text: &str| text.len() > 2;
-                let is_whole = is_said(&need.why) && is_said(&need.cost) && is_said(&need.toggled_by);
+                let is_whole = is_said(&need.why()) && is_said(&need.cost()) && is_said(need.toggled_by());
                 assert!(is_whole, "{}: {need:?}", technique.name());
             }
             let text = plan.in_words();

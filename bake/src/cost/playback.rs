@@ -82,13 +82,6 @@ impl Shown<'_> {
     }
 }
 
-/// Bytes of a page's maps as a GPU holds them.
-pub(super) fn gpu_bytes(page: &PageMaps, bits: Bits) -> u64 {
-    let layers: usize = page.lanes.iter().map(|lane| lane.layers.len()).sum();
-    let sides = page.ambient.as_ref().map_or(0, |ambient| if ambient.back.is_some() { 2 } else { 1 });
-    u64::from(page.width) * u64::from(page.height) * (layers as u64 * u64::from(bits.count()) + 2 * sides)
-}
-
 /// The set's scene is that of the points: triangle by triangle the same.
 fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Result<(), CostError> {
     let most_m = MOST_MOVED * of.half_extent_m.length();

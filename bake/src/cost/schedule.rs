@@ -188,7 +188,7 @@ impl<'a> Jobs<'a> {
             note: page_note(&manifest, settings),
             seconds: Some(total_s(&manifest.stats.seconds)),
             disk_bytes: Some(manifest.stats.bytes),
-            gpu_bytes: Some(set.pages.iter().map(|page| playback::gpu_bytes(page, set.bits)).sum()),
+            gpu_bytes: Some(set.pages.iter().map(|page| page.gpu_bytes(set.bits)).sum()),
             texels: Some(manifest.stats.texels),
             ..self.with_errors(How::Baked, errors?)
         };

@@ -109,7 +109,7 @@ impl Read {
         };
         // A page one texel high, with one texel more that nothing touches.
         let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient };
-        let gpu_bytes = playback::gpu_bytes(&page, settings.bits) / u64::from(page.width) * page_texels;
+        let gpu_bytes = page.gpu_bytes(settings.bits) / u64::from(page.width) * page_texels;
         let shown = Shown { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };
         let blends: Vec<(usize, Blend)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
         let errors = workload.on_threads(|| shown.errors(truth, &blends));

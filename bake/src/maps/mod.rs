@@ -8,6 +8,7 @@ mod ambient;
 mod cap;
 mod encode;
 mod evaluate;
+mod gpu_bytes;
 mod lanes;
 mod requantise;
 
@@ -16,6 +17,7 @@ pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_o
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
 pub use evaluate::{hard_visibility, soft_visibility};
+pub use gpu_bytes::{AmbientTextures, GpuTexel};
 pub use lanes::Lane;
 
 /// Bits of a stored time.

@@ -1,30 +1,18 @@
-//! An adapter and a device, opened without a window.
+//! The GPU that everything is drawn with: opened here without a window, or the caller's own.
 
 use std::fmt::Display;
 
 /// A GPU that is ready to work.
 pub struct Gpu {
-    /// What makes things.
+    /// Makes resources.
     pub device: wgpu::Device,
-    /// What does things.
+    /// Runs commands.
     pub queue: wgpu::Queue,
     /// The adapter's name, its kind and its driver.
     pub name: String,
-    /// Whether it is a CPU that plays a GPU.
+    /// Whether it is a software GPU, such as llvmpipe.
     pub is_software: bool,
 }
-
-/// What is used where the adapter has it.
-const WANTED: [wgpu::Features; 4] = [
-    // Shadow volumes are counted beside depths in floating point.
-    wgpu::Features::DEPTH32FLOAT_STENCIL8,
-    // Lights are added up in pictures of 32 bits.
-    wgpu::Features::FLOAT32_BLENDABLE,
-    // Casters above a shadow map are drawn at its top, and volumes reach to infinity.
-    wgpu::Features::DEPTH_CLIP_CONTROL,
-    // Passes are timed.
-    wgpu::Features::TIMESTAMP_QUERY,
-];
 
 /// What a GPU could not do.
 #[derive(Debug, thiserror::Error)]
@@ -90,7 +78,20 @@ impl GpuError {
 }
 
 impl Gpu {
-    /// Opens the fastest adapter there is.
+    /// Optional features, used where the device has them. Baked maps need none.
+    ///
+    /// | feature | without it |
+    /// |---|---|
+    /// | `DEPTH32FLOAT_STENCIL8` | no shadow volumes |
+    /// | `FLOAT32_BLENDABLE` | no lit pictures under shadow volumes in 32-bit formats, which reading back uses |
+    /// | `DEPTH_CLIP_CONTROL` | casters above a shadow map are cut off, and volumes may be near infinity |
+    /// | `TIMESTAMP_QUERY` | passes are not timed |
+    pub const WANTED_FEATURES: wgpu::Features = wgpu::Features::DEPTH32FLOAT_STENCIL8
+        .union(wgpu::Features::FLOAT32_BLENDABLE)
+        .union(wgpu::Features::DEPTH_CLIP_CONTROL)
+        .union(wgpu::Features::TIMESTAMP_QUERY);
+
+    /// Opens the fastest adapter there is, with all of its limits.
     pub fn open() -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let options = wgpu::RequestAdapterOptions {
@@ -99,22 +100,32 @@ impl Gpu {
         };
         let adapter = pollster::block_on(instance.request_adapter(&options))
             .map_err(|e| GpuError::NoAdapter { reason: e.to_string() })?;
-        let info = adapter.get_info();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("sunplay"),
-            required_features: WANTED.into_iter().fold(wgpu::Features::empty(), |all, one| all | one)
-                & adapter.features(),
+            required_features: Self::WANTED_FEATURES & adapter.features(),
             required_limits: adapter.limits(),
             ..Default::default()
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
-            .map_err(|e| GpuError::NoDevice { name: info.name.clone(), reason: e.to_string() })?;
-        let is_software = info.device_type == wgpu::DeviceType::Cpu;
-        let name = format!("{} ({:?}, {})", info.name, info.device_type, info.driver);
-        Ok(Self { device, queue, name, is_software })
+            .map_err(|e| GpuError::NoDevice { name: adapter.get_info().name, reason: e.to_string() })?;
+        Ok(Self::from_device(device, queue))
     }
 
-    /// Whether the GPU has a feature, or what it cannot do without.
+    /// Uses the caller's device and queue.
+    ///
+    /// No feature is required; request [`Gpu::WANTED_FEATURES`] as far as the adapter has them. `wgpu::Limits::default()`
+    /// serves pages of up to 8192 texels and 256 layers. Larger sets need larger `max_texture_dimension_2d`,
+    /// `max_texture_array_layers` and `max_buffer_size`: what does not fit is [`GpuError::Limit`].
+    ///
+    /// Device and queue are handles: clone them, and keep on using yours.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let info = device.adapter_info();
+        let is_software = info.device_type == wgpu::DeviceType::Cpu;
+        let name = format!("{} ({:?}, {})", info.name, info.device_type, info.driver);
+        Self { device, queue, name, is_software }
+    }
+
+    /// An error where the device lacks a feature: what it cannot do, and the feature's name.
     pub(super) fn check_feature(
         &self,
         feature: wgpu::Features,
@@ -124,12 +135,28 @@ impl Gpu {
         if self.device.features().contains(feature) { Ok(()) } else { Err(GpuError::Lacks { what, feature: name }) }
     }
 
-    /// Whether depths outside of the range can be clamped to it.
+    /// An error where a picture of this format cannot be added to. Only 32-bit formats need a feature for that.
+    pub(super) fn check_blendable(&self, format: wgpu::TextureFormat, what: &'static str) -> Result<(), GpuError> {
+        use wgpu::TextureFormat::{R32Float, Rg32Float, Rgba32Float};
+        match format {
+            R32Float | Rg32Float | Rgba32Float => {
+                self.check_feature(wgpu::Features::FLOAT32_BLENDABLE, what, "FLOAT32_BLENDABLE")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A new command encoder.
+    pub(super) fn encoder(&self) -> wgpu::CommandEncoder {
+        self.device.create_command_encoder(&Default::default())
+    }
+
+    /// Whether depths outside of [0, 1] can be clamped, where others would be cut off.
     pub(super) fn clamps_depth(&self) -> bool {
         self.device.features().contains(wgpu::Features::DEPTH_CLIP_CONTROL)
     }
 
-    /// Runs `work` and turns what the device complains of into an error.
+    /// Runs `work`. A validation or out-of-memory error of the device becomes an error.
     pub(super) fn checked<T>(&self, doing: &'static str, work: impl FnOnce() -> T) -> Result<T, GpuError> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validity = self.device.push_error_scope(wgpu::ErrorFilter::Validation);

@@ -1,37 +1,36 @@
-//! Playback on the GPU, without a window.
+//! Drawing on the GPU, with the caller's device or one opened here, and without a window.
 //!
-//! Built once per stage (`scene.rs`): vertex streams, one texture pair a page, base colour textures; and one pipeline per variant
-//! that occurs (`program.rs`). Per frame: one uniform buffer is written; a depth pass, then one pass that lights (or that tells
-//! visibility). Depth is reversed and infinite, `Depth32Float`; the second pass draws where depths are equal, so that
-//! each pixel is lit once. `volumes` puts passes between, and a stencil beside the depths.
+//! | module | what it holds |
+//! |---|---|
+//! | `device` | the GPU and its errors |
+//! | `frame` | what all renderers share: the scene's buffers and textures, pipelines, targets, passes, readback |
+//! | `plan` | what a scene calls for, counted before anything is built |
+//! | `baked` | a renderer of baked maps |
+//! | `volumes` | a renderer of stencil shadow volumes |
+//! | `shadow_maps` | a renderer of shadow maps |
 //!
-//! What the scene does not call for is not built. What it does is decided before anything is (`needs.rs`, and each technique's own
-//! `needs.rs` or `baked_plan.rs`), by the same keys that pipelines are built by; [`Census`] counts what was built, and tests
-//! hold the one against the other.
+//! Built once per stage: vertex streams, the textures of each atlas page, base colour textures. Built when first needed: one
+//! pipeline per variant of surface, page and output. Per frame: uniforms are written; a depth pass; one or more
+//! passes that light. Depth is reversed and infinite, `Depth32Float`: 1 at the near plane, 0 at infinity. Later passes draw
+//! where depths are equal, so that each pixel is lit once.
+//!
+//! What a scene does not call for is not built. That is decided before anything is built (`plan`, and each renderer's own
+//! `plan.rs`), by the same keys that pipelines are built by. [`Census`](crate::plan::Census) counts what was built, and tests
+//! compare the two.
+//!
+//! Each renderer draws with `draw_into` into a texture view of the caller's, with the caller's encoder. `lit`, `visibility` and
+//! `lamp_visibility` draw into a texture of the renderer's own and read it back.
 
-mod baked_plan;
-mod batch;
-mod buffers;
-mod census;
+mod baked;
 mod device;
-mod effects;
-mod maps;
-mod needs;
-mod program;
-mod readback;
-mod renderer;
-mod scene;
+mod frame;
+mod plan;
 mod shadow_maps;
-mod stopwatch;
-mod target;
-mod textures;
 mod volumes;
 
-pub use baked_plan::baked_plan;
-pub use census::Census;
+pub use baked::{BakedRenderer, baked_plan};
 pub use device::{Gpu, GpuError};
-pub(crate) use effects::of_maps_alone;
-pub use renderer::{Output, Renderer};
+pub use frame::{FrameTimes, Output, PictureTarget};
+pub(crate) use plan::of_maps_alone;
 pub use shadow_maps::{MapRenderer, MapReport, maps_plan};
-pub use stopwatch::FrameTimes;
 pub use volumes::{FrameReport, LightReport, VolumeRenderer, VolumeSettings, volumes_plan};

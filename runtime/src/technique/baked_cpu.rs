@@ -8,7 +8,7 @@ use crate::gpu::{GpuError, Output};
 use crate::image::Raster;
 use crate::light::{LampMoment, Moment};
 use crate::plan::DrawPlan;
-use crate::playback::{Page, ambient_bytes, page_variant};
+use crate::playback::Page;
 use crate::shade::towards_eye;
 use crate::shot::Shot;
 use crate::stage::Stage;
@@ -80,11 +80,5 @@ impl Technique for BakedCpu<'_> {
 
 /// Bytes of the maps of a stage, as a GPU holds them.
 pub(super) fn map_bytes(stage: &Stage) -> u64 {
-    let texel_bytes = |page: &sunbake::maps::PageMaps| {
-        let of_lamp = page.lamp.as_ref().map_or(0, Vec::len);
-        let layers = of_lamp + page.lanes.iter().map(|lane| lane.layers.len()).sum::<usize>();
-        let layer_bytes = u64::from(stage.bits.count()) / 8 * 4 * 2;
-        layers as u64 * layer_bytes + ambient_bytes(&page_variant(page, stage.bits, 0.0))
-    };
-    stage.pages.iter().map(|page| u64::from(page.width) * u64::from(page.height) * texel_bytes(page)).sum()
+    stage.pages.iter().map(|page| page.gpu_bytes(stage.bits)).sum()
 }

@@ -5,10 +5,10 @@
 //! rounding of it elsewhere.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, Gpu, GpuError, Output, Renderer};
+use crate::gpu::{BakedRenderer, Gpu, GpuError, Output};
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::plan::DrawPlan;
+use crate::plan::{Census, DrawPlan};
 use crate::shot::Shot;
 use crate::stage::Stage;
 use glam::Vec3;
@@ -16,13 +16,13 @@ use sunbake_shaders::Filter;
 
 /// Baked maps on the GPU.
 pub struct BakedGpu<'g> {
-    renderer: Renderer<'g>,
+    renderer: BakedRenderer<'g>,
 }
 
 impl<'g> BakedGpu<'g> {
     /// Uploads a stage.
     pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
-        Ok(Self { renderer: Renderer::new(gpu, stage, filter)? })
+        Ok(Self { renderer: BakedRenderer::new(gpu, stage, filter)? })
     }
 
     /// The same, with passes timed where the GPU can.

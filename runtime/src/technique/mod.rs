@@ -16,10 +16,10 @@ pub use shadow_maps::ShadowMaps;
 pub use truth::{LightKind, Truth};
 pub use volumes::Volumes;
 
-use crate::gpu::{Census, FrameTimes, GpuError, Output};
+use crate::gpu::{FrameTimes, GpuError, Output};
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::plan::DrawPlan;
+use crate::plan::{Census, DrawPlan};
 use crate::shade;
 use crate::shot::Shot;
 use glam::Vec3;

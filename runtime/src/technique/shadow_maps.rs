@@ -5,10 +5,10 @@
 //! does about it, is in [`crate::shadow_maps::Variant`] and measured in `docs/measurements/shadow_maps.md`.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, Gpu, GpuError, MapRenderer, MapReport, Output};
+use crate::gpu::{Gpu, GpuError, MapRenderer, MapReport, Output};
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::plan::DrawPlan;
+use crate::plan::{Census, DrawPlan};
 use crate::shadow_maps::{MapSettings, Variant};
 use crate::shot::Shot;
 use crate::stage::Stage;

@@ -6,10 +6,10 @@
 //! pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies on it.
 
 use super::{FrameCost, Technique};
-use crate::gpu::{Census, FrameReport, Gpu, GpuError, Output, VolumeRenderer, VolumeSettings};
+use crate::gpu::{FrameReport, Gpu, GpuError, Output, VolumeRenderer, VolumeSettings};
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::plan::DrawPlan;
+use crate::plan::{Census, DrawPlan};
 use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::volumes::{CasterCounts, Mode};

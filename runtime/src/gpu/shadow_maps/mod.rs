@@ -1,40 +1,39 @@
-//! Frames of a stage that shadow maps light.
+//! Draws a stage that shadow maps light.
 //!
-//! Built once per stage: the scene, and pipelines per variant that occurs. Per sun, or for maps that follow the view per frame:
-//! a pass for each map. Per frame: depths, then one pass that lights, reading the maps. `map:ground` adds a picture of what casts,
-//! drawn beside its map and blurred in two passes; `map:planar` has no map, and lays what casts flat as the camera sees it.
+//! For each direction of the sun, and for maps that follow the view in each frame: a pass for each map. Per frame: depths, then
+//! one pass that lights and reads the maps. `map:ground` adds a mask of what casts on the ground, as the sun sees it, blurred in
+//! two passes. `map:planar` has no map: it projects casters flat onto the ground, as the camera sees it.
 //!
-//! Nothing is built for what is not called for: no map where nothing can be in shadow, no mask without a ground, no pipeline for
-//! holes without holes.
+//! Nothing is built that is not called for: no map where nothing can be in shadow, no mask without a ground, no pipeline for
+//! alpha masks without alpha masks.
 
-mod needs;
+mod bindings;
+mod decisions;
 mod passes;
+mod plan;
 mod probe;
 mod programs;
-mod targets;
+mod textures;
 
-use super::census::Census;
 use super::device::{Gpu, GpuError};
-use super::needs::SceneNeeds;
-use super::program::Program;
-use super::readback;
-use super::renderer::Output;
-use super::scene::SceneOnGpu;
-use super::stopwatch::{FrameTimes, Stopwatch};
-use super::target::{DEPTH_FORMAT, Target};
+use super::frame::{
+    Batch, Canvas, DEPTH_FORMAT, FrameTimes, Output, PassClock, PictureTarget, ProgramTable, SceneOnGpu, Targets,
+    readback, with_pipelines,
+};
+use super::plan::SceneNeeds;
 use crate::View;
 use crate::light::Moment;
-use crate::plan::DrawPlan;
+use crate::plan::{Census, DrawPlan};
 use crate::shadow_maps::{Extents, MapProjection, MapSettings, ShadowScene, Variant};
 use crate::stage::Stage;
+use bindings::{MapBindings, MapReads};
 use glam::Vec3;
-use needs::{MapNeeds, Shading};
-use programs::ProgramKey;
+use plan::{MapNeeds, SunShading};
+use programs::{MapProgram, SunReads};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::time::Instant;
 use sunbake_shaders::ShadowTap;
-use targets::{Bindings, Depths, Mask, Reads};
+use textures::{CasterMask, DepthMaps};
 
 /// What a frame was made of.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -55,39 +54,42 @@ pub struct MapReport {
     pub times: Option<FrameTimes>,
 }
 
-/// A stage on the GPU, with its maps.
+/// Draws a stage under shadow maps.
 pub struct MapRenderer<'g> {
     gpu: &'g Gpu,
     settings: MapSettings,
     shadow_scene: ShadowScene,
     scene: SceneOnGpu,
-    reads: Reads,
+    reads: MapReads,
     halfway: Option<f32>,
-    bindings: Bindings,
-    depths: Option<Depths>,
-    mask: Option<[Mask; 2]>,
-    flat: Option<Mask>,
+    bindings: MapBindings,
+    maps: Option<DepthMaps>,
+    /// A mask as the sun sees it, and what it is blurred into.
+    mask: Option<[CasterMask; 2]>,
+    /// A mask of casters projected flat onto the ground, as the camera sees it.
+    flat: Option<CasterMask>,
+    /// What surfaces read, and its number of entries.
     read_group: Option<(wgpu::BindGroup, usize)>,
     /// The last sun's extents.
     extents: Option<Extents>,
-    /// What the maps hold that are there.
+    /// What the maps hold.
     drawn: Vec<MapProjection>,
-    programs: BTreeMap<ProgramKey, Program>,
-    targets: BTreeMap<Output, Target>,
-    stopwatch: Option<Stopwatch>,
+    programs: ProgramTable<MapProgram>,
+    targets: Targets,
+    clock: PassClock,
     report: MapReport,
     /// What the last picture called for.
     last: Option<MapNeeds>,
 }
 
-/// The sun at a moment.
+/// How the sun lights a view at a moment.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SunNow {
     /// It gives no light.
     Down,
     /// Nothing can be in shadow.
     Open,
-    /// Some things may be.
+    /// Something may be in shadow; the maps that tell. None are needed to project casters flat.
     Shaded(Vec<MapProjection>),
 }
 
@@ -96,51 +98,51 @@ impl<'g> MapRenderer<'g> {
     pub fn new(gpu: &'g Gpu, stage: &Stage, settings: MapSettings) -> Result<Self, GpuError> {
         let shadow_scene = ShadowScene::new(stage);
         let halfway = compares(&settings).then(|| probe::halfway(gpu)).transpose()?;
-        let reads = Reads::new(&settings, shadow_scene.ground.height_m.is_some(), halfway);
+        let reads = MapReads::new(&settings, shadow_scene.ground.height_m.is_some(), halfway);
         let scene =
             gpu.checked("uploading the scene", || SceneOnGpu::with_ground(gpu, stage, Some(&shadow_scene.ground)))??;
         Ok(Self {
-            bindings: gpu.checked("preparing shadow maps", || Bindings::new(gpu, &reads))?,
+            bindings: gpu.checked("preparing shadow maps", || MapBindings::new(gpu, &reads))?,
             gpu,
             settings,
             shadow_scene,
             scene,
             reads,
             halfway,
-            depths: None,
+            maps: None,
             mask: None,
             flat: None,
             read_group: None,
             extents: None,
             drawn: Vec::new(),
-            programs: BTreeMap::new(),
-            targets: BTreeMap::new(),
-            stopwatch: settings.is_timed.then(|| Stopwatch::new(gpu)).flatten(),
+            programs: ProgramTable::default(),
+            targets: Targets::new(DEPTH_FORMAT),
+            clock: PassClock::new(gpu, settings.is_timed),
             report: MapReport::default(),
             last: None,
         })
     }
 
-    /// The picture at a moment, in linear light.
+    /// The lit picture at a moment, in linear light and row order.
     pub fn lit(&mut self, view: &View, moment: &Moment) -> Result<Vec<Vec3>, GpuError> {
         Ok(readback::colors(&self.draw(view, moment, Output::Lit)?))
     }
 
-    /// How much of the sun each pixel's surface sees at a moment.
+    /// The share of the sun that each pixel's surface sees at a moment.
     pub fn visibility(&mut self, view: &View, moment: &Moment) -> Result<Vec<f32>, GpuError> {
         self.draw(view, moment, Output::Visibility)
     }
 
-    /// How much of the lamp each pixel's surface sees at a moment, as it was baked; nothing where it was not.
+    /// The share of the lamp that each pixel's surface sees at a moment, as it was baked; 0 where it was not.
     pub fn lamp_visibility(&mut self, view: &View, moment: &Moment) -> Result<Vec<f32>, GpuError> {
         self.draw(view, moment, Output::LampVisibility)
     }
 
-    /// How far along the camera's axis the surfaces of the last picture of visibility lie, in metres; without end where there
-    /// is none.
+    /// Depths of the surfaces of the last picture of visibility along the camera's axis, in metres; infinite where there is
+    /// none.
     pub fn depths_m(&self, view: &View) -> Result<Vec<f32>, GpuError> {
-        let Some(target) = self.targets.get(&Output::Visibility) else { return Ok(Vec::new()) };
-        let stored = self.gpu.checked("reading depths", || readback::read_depths(self.gpu, target))??;
+        let Some(depth) = self.targets.last_depth(Output::Visibility) else { return Ok(Vec::new()) };
+        let stored = self.gpu.checked("reading depths", || readback::read_depths(self.gpu, depth))??;
         Ok(stored.iter().map(|depth| view.near_m() / depth).collect())
     }
 
@@ -149,7 +151,7 @@ impl<'g> MapRenderer<'g> {
         &self.report
     }
 
-    /// What its ground is.
+    /// Height of the ground in bake space, metres; none where no large plane is level.
     pub fn ground_height_m(&self) -> Option<f64> {
         self.shadow_scene.ground.height_m
     }
@@ -164,23 +166,23 @@ impl<'g> MapRenderer<'g> {
         self.halfway
     }
 
-    /// Maps that the last frame read; none if nothing in it could be in shadow, whatever earlier ones left.
+    /// The maps that the last frame read; none if nothing in it could be in shadow.
     pub fn maps(&self) -> &[MapProjection] {
         &self.drawn[..self.report.maps.min(self.drawn.len())]
     }
 
-    /// Forgets the maps that are there.
+    /// Forgets the maps, so that the next frame draws them anew.
     pub fn forget(&mut self) {
         self.drawn.clear();
         self.extents = None;
     }
 
-    /// Whether casters above a map are drawn at its top.
+    /// Whether casters above a map are clamped to its top.
     fn clamps_depth(&self) -> bool {
         self.settings.means.depth_clamp && self.gpu.clamps_depth()
     }
 
-    /// What the sun does at a moment, and the maps that a view then needs.
+    /// How the sun lights a view at a moment, with the maps that it needs.
     fn sun_now(&mut self, view: &View, moment: &Moment, output: Output) -> SunNow {
         let towards = moment.sun_direction.as_dvec3();
         let is_disc = self.settings.variant == Variant::Pcss;
@@ -202,9 +204,32 @@ impl<'g> MapRenderer<'g> {
         if maps.is_empty() { SunNow::Open } else { SunNow::Shaded(maps) }
     }
 
-    fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
+    /// Draws a picture into the caller's texture view: records its passes into the caller's encoder, and submits nothing. Depths and
+    /// maps are kept in textures of the renderer's own. Pipelines are built for the format when it is first drawn into.
+    ///
+    /// Several pictures may be recorded into one encoder. Submit it: the next picture takes maps that were recorded as drawn.
+    pub fn draw_into(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: PictureTarget<'_>,
+        output: Output,
+        view: &View,
+        moment: &Moment,
+    ) -> Result<(), GpuError> {
+        // Maps of a frame that failed may not have been drawn.
+        self.record(encoder, target, output, view, moment).inspect_err(|_| self.forget())
+    }
+
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: PictureTarget<'_>,
+        output: Output,
+        view: &View,
+        moment: &Moment,
+    ) -> Result<(), GpuError> {
         let gpu = self.gpu;
-        self.report = MapReport::default();
+        (self.report, self.last) = (MapReport::default(), None);
         let started = Instant::now();
         let now = self.sun_now(view, moment, output);
         self.report.fit_seconds = started.elapsed().as_secs_f64();
@@ -214,65 +239,81 @@ impl<'g> MapRenderer<'g> {
             SunNow::Shaded(_) => None,
         };
         let needs = self.needs_of(view.size, output, &now);
-        self.last = None;
-        gpu.checked("building pipelines", || self.prepare(view.size, &needs))??;
+        let depth = self.targets.depth(gpu, output, view.size)?;
+        gpu.checked("building pipelines", || self.prepare(view.size, &needs, target.format))??;
+        self.scene.frame.write(gpu, encoder, view, moment);
+        self.clock.start();
+        if let SunNow::Shaded(maps) = &now {
+            let height_m = self.shadow_scene.ground.casts_from_m as f32;
+            self.bindings.write(gpu, encoder, maps, view.eye_m, height_m);
+            self.shadow_passes(encoder, maps);
+        }
+        let canvas = Canvas { output, picture: target, depth, clock: &self.clock };
+        let program = |key: &MapProgram| self.programs.get(key, target.format);
+        canvas.depth_pass(encoder, &self.scene, |key| program(&MapProgram::Depth(*key)));
+        let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
+            let key = needs.surface_program_key(&self.scene.needs, &batch.key);
+            if let MapProgram::Surface(_, SunReads::Maps | SunReads::Mask | SunReads::Flat, _) = key {
+                pass.set_bind_group(3, self.read_group.as_ref().map(|(group, _)| group), &[]);
+            }
+            match output {
+                Output::Visibility => self.scene.draw_without_page(pass, batch, program(&key)),
+                Output::Lit | Output::LampVisibility => self.scene.draw_surface(pass, batch, program(&key)),
+            }
+        };
+        let sky = (output == Output::Lit).then(|| program(&MapProgram::Sky));
+        canvas.surface_pass(encoder, &self.scene, draw, sky);
+        self.report.passes = self.clock.passes();
+        self.last = Some(needs.drawn(self.report.drawn));
+        Ok(())
+    }
+
+    /// Draws into a picture of its own, and reads it back.
+    fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
+        let gpu = self.gpu;
+        let picture = self.targets.picture(gpu, output, view.size)?;
         gpu.checked("drawing", || {
-            self.scene.frame.write(gpu, view, moment);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            if let Some(stopwatch) = &mut self.stopwatch {
-                stopwatch.start();
-            }
-            if let SunNow::Shaded(maps) = &now {
-                let height_m = self.shadow_scene.ground.casts_from_m as f32;
-                self.bindings.write(gpu, maps, view.eye_m, height_m);
-                self.shadow_passes(&mut encoder, maps);
-            }
-            self.depth_pass(&mut encoder, output);
-            self.surface_pass(&mut encoder, output, &needs);
-            let floats = readback::read(gpu, &self.targets[&output], output.channels(), encoder)?;
-            self.report.times = self.stopwatch.as_ref().map(|stopwatch| stopwatch.read(gpu)).transpose()?;
-            self.last = Some(needs.drawn(self.report.drawn));
+            let mut encoder = gpu.encoder();
+            self.record(&mut encoder, picture.target(), output, view, moment)?;
+            let floats = readback::read(gpu, &picture, output.channels(), encoder)?;
+            self.report.times = self.clock.read(gpu)?;
             Ok(floats)
         })
         .flatten()
         // Maps of a frame that failed may not have been drawn.
-        .inspect_err(|_| self.forget())
+        .inspect_err(|_| {
+            self.last = None;
+            self.forget();
+        })
     }
 
     /// Makes whatever a frame needs and is not there yet.
-    fn prepare(&mut self, size: [u32; 2], needs: &MapNeeds) -> Result<(), GpuError> {
-        let output = needs.output;
-        if self.targets.get(&output).is_none_or(|target| target.size != size) {
-            self.targets.insert(output, Target::new(self.gpu, size, output.format(), DEPTH_FORMAT)?);
-        }
-        if let Shading::Shaded { maps, .. } = needs.shading {
+    fn prepare(&mut self, size: [u32; 2], needs: &MapNeeds, format: wgpu::TextureFormat) -> Result<(), GpuError> {
+        if let SunShading::Shaded { maps, .. } = needs.shading {
             self.prepare_shadows(size, maps)?;
         }
-        for key in needs.programs(&self.scene.needs) {
-            if !self.programs.contains_key(&key) {
-                let program = self.program(&key);
-                self.programs.insert(key, program);
-            }
-        }
+        let mut programs = std::mem::take(&mut self.programs);
+        programs.prepare(needs.programs(&self.scene.needs), format, |key| self.program(key, format));
+        self.programs = programs;
         Ok(())
     }
 
-    /// Makes the maps and pictures of what casts that a frame needs and that are not there yet.
+    /// Makes the maps and masks that a frame needs and that are not there yet.
     fn prepare_shadows(&mut self, size: [u32; 2], count: usize) -> Result<(), GpuError> {
         let (gpu, size_texels) = (self.gpu, self.settings.size_texels);
-        if self.reads.has_depths && self.depths.as_ref().is_none_or(|depths| depths.layers.len() < count) {
-            self.depths = Some(Depths::new(gpu, size_texels, count as u32)?);
+        if self.reads.has_depths && self.maps.as_ref().is_none_or(|maps| maps.layers.len() < count) {
+            self.maps = Some(DepthMaps::new(gpu, size_texels, count as u32)?);
             (self.read_group, self.drawn) = (None, Vec::new());
         }
         if self.reads.has_mask && self.mask.is_none() {
-            self.mask = Some([(); 2].map(|()| Mask::new(gpu, [size_texels; 2])));
+            self.mask = Some([(); 2].map(|()| CasterMask::new(gpu, [size_texels; 2])));
         }
         if self.reads.has_flat_mask && self.flat.as_ref().is_none_or(|flat| flat.size != size) {
-            (self.flat, self.read_group) = (Some(Mask::new(gpu, size)), None);
+            (self.flat, self.read_group) = (Some(CasterMask::new(gpu, size)), None);
         }
         if self.read_group.is_none() {
             let mask = self.mask.as_ref().map(|[mask, _]| mask);
-            self.read_group = Some(self.bindings.read(gpu, self.depths.as_ref(), mask, self.flat.as_ref()));
+            self.read_group = Some(self.bindings.read(gpu, self.maps.as_ref(), mask, self.flat.as_ref()));
         }
         Ok(())
     }
@@ -280,17 +321,17 @@ impl<'g> MapRenderer<'g> {
     /// What a frame calls for.
     fn needs_of(&self, size: [u32; 2], output: Output, now: &SunNow) -> MapNeeds {
         let shading = match now {
-            SunNow::Down => Shading::Down,
-            SunNow::Open => Shading::Open,
-            SunNow::Shaded(maps) => Shading::Shaded { maps: maps.len(), drawn: maps.len() },
+            SunNow::Down => SunShading::Down,
+            SunNow::Open => SunShading::Open,
+            SunNow::Shaded(maps) => SunShading::Shaded { maps: maps.len(), drawn: maps.len() },
         };
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let (settings, reads, ground_casts) = (self.settings, self.reads, self.shadow_scene.ground.casts);
         MapNeeds { output, settings, reads, shading, ground_casts, pixels, is_exact: true }
     }
 
-    /// What pictures of a kind and of so many pixels call for: of the kind that was drawn last what the last one took, else the most
-    /// that one may take.
+    /// What pictures of a kind and of so many pixels call for: what the last picture took, if it was of this kind; else an
+    /// upper bound.
     pub fn plan_of(&self, stage: &Stage, output: Output, pixels: u64) -> DrawPlan {
         let most = || MapNeeds::most(stage, &self.shadow_scene, &self.settings, self.reads, output, pixels);
         self.last.filter(|last| last.output == output).unwrap_or_else(most).plan(&self.scene.needs)
@@ -298,38 +339,38 @@ impl<'g> MapRenderer<'g> {
 
     /// What has been built so far, and the passes of the last frame.
     pub fn census(&self) -> Census {
-        let surfaces = self.programs.keys().filter_map(ProgramKey::batch);
-        let scene = Census::of_scene(&self.scene).with_pipelines(self.programs.len(), surfaces);
+        let scene = self.scene.census();
         let read_slots = self.read_group.as_ref().map(|(_, slots)| *slots);
         let views = self.bindings.view_count();
         let masks = || self.mask.iter().flatten().chain(&self.flat);
-        let mask_bytes: u64 = masks().map(Mask::bytes).sum();
-        Census {
+        let mask_bytes: u64 = masks().map(CasterMask::bytes).sum();
+        let census = Census {
             passes: self.report.passes,
-            targets: 2 * self.targets.len(),
+            targets: self.targets.count(),
             bind_groups: scene.bind_groups + usize::from(read_slots.is_some()) + views,
             bindings: scene.bindings + read_slots.unwrap_or(0) + views,
             shadow_pipelines: self.programs.keys().filter(|key| key.is_shadow()).count(),
-            shadow_maps: self.depths.as_ref().map_or(0, |depths| depths.layers.len()),
+            shadow_maps: self.maps.as_ref().map_or(0, |maps| maps.layers.len()),
             shadow_masks: masks().count(),
-            shadow_bytes: self.depths.as_ref().map_or(0, Depths::bytes) + mask_bytes,
+            shadow_bytes: self.maps.as_ref().map_or(0, DepthMaps::bytes) + mask_bytes,
             ..scene
-        }
+        };
+        with_pipelines(census, self.programs.keys())
     }
 }
 
-/// Whether a sampler compares, which may or may not filter.
+/// Whether a comparison sampler is used. It may or may not filter.
 fn compares(settings: &MapSettings) -> bool {
     !settings.gathers() && !matches!(settings.variant, Variant::Plain | Variant::Planar)
 }
 
-/// The most that pictures of a kind and of so many pixels may call for, whatever the view and the moment, of a stage of which
-/// nothing has been built.
+/// An upper bound of what pictures of a kind and of so many pixels call for, whatever the view and the moment, of a stage of
+/// which nothing has been built.
 pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: u64) -> DrawPlan {
     let scene = ShadowScene::new(stage);
     // Whether the sampler filters changes no count.
     let halfway = compares(settings).then_some(0.5);
-    let reads = Reads::new(settings, scene.ground.height_m.is_some(), halfway);
+    let reads = MapReads::new(settings, scene.ground.height_m.is_some(), halfway);
     let needs = MapNeeds::most(stage, &scene, settings, reads, output, pixels);
     needs.plan(&SceneNeeds::new(stage, Some(&scene.ground)))
 }

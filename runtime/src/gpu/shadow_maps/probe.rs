@@ -1,11 +1,9 @@
-//! Whether a sampler filters what it compares. It may: what comes of it is left to each implementation.
+//! Whether a comparison sampler filters. WebGPU leaves that to each implementation.
 
-use super::super::device::{Gpu, GpuError};
-use super::super::program::{Program, Source, State, depth_state};
-use super::super::readback;
-use super::super::target::{DEPTH_FORMAT, depths_drawn_into};
+use crate::gpu::device::{Gpu, GpuError};
+use crate::gpu::frame::{DEPTH_FORMAT, PipelineState, Program, ShaderStages, depth_state, readback};
 
-/// What a filtering sampler reads halfway between a texel that is lit and one that is not; 0 or 1 if it does not filter.
+/// What a filtering comparison sampler reads halfway between a lit texel and a shaded one; 0 or 1 if it does not filter.
 pub fn halfway(gpu: &Gpu) -> Result<f32, GpuError> {
     gpu.checked("probing the comparison sampler", || {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -30,7 +28,7 @@ pub fn halfway(gpu: &Gpu) -> Result<f32, GpuError> {
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = gpu.encoder();
         draw_one_texel(gpu, &texture, &mut encoder);
         compare(gpu, &texture, &found, &mut encoder);
         encoder.copy_buffer_to_buffer(&found, 0, &copied, 0, 4);
@@ -42,15 +40,16 @@ pub fn halfway(gpu: &Gpu) -> Result<f32, GpuError> {
 
 fn draw_one_texel(gpu: &Gpu, texture: &wgpu::Texture, encoder: &mut wgpu::CommandEncoder) {
     let text = sunbake_shaders::shadow_probe_shader();
-    let source = Source { text: &text, vertex: "probe_vertex", fragment: None, attributes: &[] };
-    let state = State::new(None, depth_state(DEPTH_FORMAT, true, wgpu::CompareFunction::Always), true);
+    let source = ShaderStages { text: &text, vertex: "probe_vertex", fragment: None, attributes: &[] };
+    let state = PipelineState::new(None, depth_state(DEPTH_FORMAT, true, wgpu::CompareFunction::Always), true);
     let program = Program::new(gpu, &source, &[], state);
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("probe"),
-        depth_stencil_attachment: Some(depths_drawn_into(
-            &texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            wgpu::LoadOp::Clear(0.0),
-        )),
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &texture.create_view(&wgpu::TextureViewDescriptor::default()),
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
         ..Default::default()
     });
     pass.set_pipeline(&program.pipeline);
@@ -91,7 +90,7 @@ fn compare(gpu: &Gpu, texture: &wgpu::Texture, found: &wgpu::Buffer, encoder: &m
     pass.dispatch_workgroups(1, 1, 1);
 }
 
-/// A sampler that compares: lit is what lies no deeper than what is stored.
+/// A sampler that compares: what lies no deeper than the stored depth is lit.
 pub fn comparison_sampler(gpu: &Gpu, is_filtering: bool) -> wgpu::Sampler {
     let filter = if is_filtering { wgpu::FilterMode::Linear } else { wgpu::FilterMode::Nearest };
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {

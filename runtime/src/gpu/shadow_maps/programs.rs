@@ -1,89 +1,95 @@
-//! Pipelines of shadow maps, and of surfaces that they light.
+//! Pipelines of shadow maps, and of surfaces that read them.
 
-use super::super::batch::BatchKey;
-use super::super::program::{Program, Source, State, depth_state};
-use super::super::renderer::{Output, sky_program, surface_source, surface_state};
-use super::super::target::DEPTH_FORMAT;
 use super::MapRenderer;
-use super::targets::{MASK_FORMAT, blur_layout};
+use super::bindings::blur_layout;
+use super::textures::MASK_FORMAT;
+use crate::gpu::frame::{
+    BatchKey, DEPTH_FORMAT, Output, PipelineState, Program, ProgramKey, ShaderStages, depth_key, depth_state,
+    sky_program, surface_stages, surface_state,
+};
 use crate::shadow_maps::Variant;
 use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowViews, SurfaceVariant};
 
-/// Which pipeline.
+/// A pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ProgramKey {
+pub enum MapProgram {
     /// Depths as the camera sees them.
     Depth(BatchKey),
-    /// Depths as the sun does.
+    /// A shadow map.
     Map(BatchKey),
-    /// A picture of what casts.
+    /// A mask of what casts on the ground.
     Mask(BatchKey),
-    /// Its blur, across or down.
+    /// The blur of a mask.
     Blur {
-        /// Which.
+        /// Down; else across.
         is_down: bool,
     },
     /// Surfaces, and what is read of the sun for them.
-    Surface(Output, Sun, BatchKey),
-    /// The background.
+    Surface(Output, SunReads, BatchKey),
+    /// The sky.
     Sky,
 }
 
 /// What is read of the sun for a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sun {
-    /// Nothing: it is down, or not asked for.
+pub enum SunReads {
+    /// Nothing: the sun is down, or not asked for.
     Down,
-    /// Nothing: nothing hides it.
+    /// Nothing: no caster hides the sun.
     Open,
-    /// Maps of depths.
+    /// Shadow maps.
     Maps,
-    /// A blurred picture of what casts.
+    /// A blurred mask.
     Mask,
-    /// A picture of what casts, laid flat.
+    /// A mask of casters projected flat onto the ground.
     Flat,
 }
 
-impl ProgramKey {
-    /// The surfaces that it draws, if it does.
-    pub fn batch(&self) -> Option<&BatchKey> {
+impl ProgramKey for MapProgram {
+    fn batch(&self) -> Option<&BatchKey> {
         match self {
             Self::Depth(key) | Self::Map(key) | Self::Mask(key) | Self::Surface(_, _, key) => Some(key),
             Self::Blur { .. } | Self::Sky => None,
         }
     }
 
-    /// Whether it draws a map or a picture of what casts.
+    fn has_color(&self) -> bool {
+        matches!(self, Self::Surface(..) | Self::Sky)
+    }
+}
+
+impl MapProgram {
+    /// Whether it draws a shadow map or a mask.
     pub fn is_shadow(&self) -> bool {
         matches!(self, Self::Map(_) | Self::Mask(_) | Self::Blur { .. })
     }
 }
 
-/// The key of a caster's program: both sides cast, and only holes tell them apart.
+/// The key of a caster's program. Both sides cast, and only alpha masks tell casters apart.
 pub fn caster_key(key: &BatchKey) -> BatchKey {
-    BatchKey { is_two_sided: true, ..super::super::scene::depth_key(key) }
+    BatchKey { is_two_sided: true, ..depth_key(key) }
 }
 
 impl MapRenderer<'_> {
     /// Makes a program.
-    pub(super) fn program(&self, key: &ProgramKey) -> Program {
+    pub(super) fn program(&self, key: &MapProgram, format: wgpu::TextureFormat) -> Program {
         let gpu = self.gpu;
         match key {
-            ProgramKey::Depth(key) => self.scene.depth_program(gpu, key, DEPTH_FORMAT),
-            ProgramKey::Sky => sky_program(gpu, &self.scene, surface_state(Output::Lit, true)),
-            ProgramKey::Surface(output, sun, key) => self.surface_program(*output, *sun, key),
-            ProgramKey::Map(key) => self.map_program(key),
-            ProgramKey::Mask(key) => self.mask_program(key),
-            ProgramKey::Blur { is_down } => {
+            MapProgram::Depth(key) => self.scene.depth_program(gpu, key, DEPTH_FORMAT),
+            MapProgram::Sky => sky_program(gpu, &self.scene, surface_state(format, DEPTH_FORMAT, true)),
+            MapProgram::Surface(output, sun, key) => self.surface_program(*output, *sun, key, format),
+            MapProgram::Map(key) => self.map_program(key),
+            MapProgram::Mask(key) => self.mask_program(key),
+            MapProgram::Blur { is_down } => {
                 let text = sunbake_shaders::blur_shader();
                 let fragment = Some(if *is_down { "blur_down_fragment" } else { "blur_across_fragment" });
-                let source = Source { text: &text, vertex: "screen_vertex", fragment, attributes: &[] };
+                let source = ShaderStages { text: &text, vertex: "screen_vertex", fragment, attributes: &[] };
                 Program::new(gpu, &source, &[Some(&blur_layout(gpu))], mask_state())
             }
         }
     }
 
-    fn surface_program(&self, output: Output, sun: Sun, key: &BatchKey) -> Program {
+    fn surface_program(&self, output: Output, sun: SunReads, key: &BatchKey, format: wgpu::TextureFormat) -> Program {
         let source = self.source(sun);
         let page = self.scene.variant(key);
         let (text, fragment) = match output {
@@ -102,22 +108,23 @@ impl MapRenderer<'_> {
         let attributes = sunbake_shaders::attributes(key.surface);
         let [frame, page, texture] = self.scene.groups(key);
         let page = page.filter(|_| output != Output::Visibility);
-        let maps = matches!(sun, Sun::Maps | Sun::Mask | Sun::Flat).then_some(&self.bindings.read_layout);
-        let state = surface_state(output, key.is_two_sided);
-        Program::new(self.gpu, &surface_source(&text, fragment, &attributes), &[frame, page, texture, maps], state)
+        let maps =
+            matches!(sun, SunReads::Maps | SunReads::Mask | SunReads::Flat).then_some(&self.bindings.read_layout);
+        let state = surface_state(format, DEPTH_FORMAT, key.is_two_sided);
+        Program::new(self.gpu, &surface_stages(&text, fragment, &attributes), &[frame, page, texture, maps], state)
     }
 
     fn map_program(&self, key: &BatchKey) -> Program {
         let is_cut = key.surface.is_cut;
         let attributes = caster_attributes(key);
-        let source = Source {
+        let source = ShaderStages {
             text: &sunbake_shaders::shadow_depth_shader(key.surface),
             vertex: if is_cut { "surface_vertex" } else { "depth_vertex" },
             fragment: is_cut.then_some("depth_fragment"),
             attributes: &attributes,
         };
         let depth = depth_state(DEPTH_FORMAT, true, wgpu::CompareFunction::Less);
-        let state = State { clamps_depth: self.clamps_depth(), ..State::new(None, depth, true) };
+        let state = PipelineState { clamps_depth: self.clamps_depth(), ..PipelineState::new(None, depth, true) };
         Program::new(self.gpu, &source, &self.caster_groups(key), state)
     }
 
@@ -125,13 +132,13 @@ impl MapRenderer<'_> {
         let is_cut = key.surface.is_cut;
         let attributes = caster_attributes(key);
         let is_flat = self.settings.variant == Variant::Planar;
-        let source = Source {
+        let source = ShaderStages {
             text: &sunbake_shaders::shadow_mask_shader(key.surface, is_flat),
             vertex: if is_cut { "surface_vertex" } else { "mask_vertex" },
             fragment: Some("mask_fragment"),
             attributes: &attributes,
         };
-        let state = State { clamps_depth: self.clamps_depth() && !is_flat, ..mask_state() };
+        let state = PipelineState { clamps_depth: self.clamps_depth() && !is_flat, ..mask_state() };
         Program::new(self.gpu, &source, &self.caster_groups(key), state)
     }
 
@@ -141,7 +148,7 @@ impl MapRenderer<'_> {
     }
 
     /// What a surface's shader reads of the sun.
-    fn source(&self, sun: Sun) -> ShadowSource {
+    fn source(&self, sun: SunReads) -> ShadowSource {
         let settings = &self.settings;
         let filter = match settings.variant {
             Variant::Pcf16 | Variant::Cascades => ShadowFilter::Sixteen,
@@ -156,11 +163,11 @@ impl MapRenderer<'_> {
             _ => ShadowViews::One,
         };
         match sun {
-            Sun::Down => ShadowSource::Down,
-            Sun::Open => ShadowSource::Open,
-            Sun::Mask => ShadowSource::Mask,
-            Sun::Flat => ShadowSource::Flat,
-            Sun::Maps => {
+            SunReads::Down => ShadowSource::Down,
+            SunReads::Open => ShadowSource::Open,
+            SunReads::Mask => ShadowSource::Mask,
+            SunReads::Flat => ShadowSource::Flat,
+            SunReads::Maps => {
                 let margin_texels = settings.margin_texels() as f32 - 0.5;
                 ShadowSource::Maps { filter, tap, views, bias: self.bias(filter, tap), margin_texels }
             }
@@ -169,10 +176,10 @@ impl MapRenderer<'_> {
 
     fn bias(&self, filter: ShadowFilter, tap: ShadowTap) -> ShadowBias {
         let bias = &self.settings.bias;
-        // Of the texels that a comparison takes, how far the farthest lies from the place that it is made for.
+        // How far the farthest texel of a comparison lies from the place that is compared, in texels.
         let tap_reach = match tap {
             ShadowTap::Filtered => 1.0,
-            // Compared with the plane at the texel itself, it is the same place.
+            // Each texel is compared with the plane at the texel itself.
             _ if bias.has_plane => 0.0,
             ShadowTap::Gathered => 1.0,
             ShadowTap::Manual | ShadowTap::Nearest => 0.5,
@@ -200,6 +207,6 @@ fn caster_attributes(key: &BatchKey) -> Vec<sunbake_shaders::Attribute> {
     }
 }
 
-fn mask_state() -> State {
-    State { target: Some(MASK_FORMAT.into()), depth_stencil: None, is_two_sided: true, clamps_depth: false }
+fn mask_state() -> PipelineState {
+    PipelineState { target: Some(MASK_FORMAT.into()), depth_stencil: None, is_two_sided: true, clamps_depth: false }
 }

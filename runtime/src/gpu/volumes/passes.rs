@@ -1,175 +1,111 @@
-//! Passes of a frame.
+//! The passes that only shadow volumes have.
 
-use super::super::renderer::Output;
-use super::super::scene::depth_key;
-use super::super::stopwatch::Phase;
-use super::super::target::drawn_into;
-use super::buffers::{DrawCall, Draws, Run};
-use super::programs::{KEPT, ProgramKey, hard_key, volume_key};
-use super::{Shining, VolumeRenderer};
+use super::VolumeRenderer;
+use super::draws::{FaceDraw, VolumeDraws};
+use super::extruded::CountedRun;
+use super::lights::FrameLight;
+use super::programs::{EARLIER_RUN, FaceKey, VolumeProgram, face_key, hard_key};
+use super::record::VolumeCanvas;
+use crate::gpu::frame::{
+    DepthBuffer, Output, Phase, PictureTarget, Program, STENCIL_FORMAT, begin_color_pass, begin_depth_pass,
+};
 use crate::volumes::FramePlan;
 use sunbake_shaders::VolumeUse;
 
-/// Where in a frame a light's pass stands.
+/// Where a light's pass stands among those of all lights.
 #[derive(Debug, Clone, Copy)]
-pub struct Ends {
-    /// Nothing has been drawn into the picture.
+pub struct PassPlace {
+    /// Nothing has been drawn into a picture of visibility.
     pub is_first: bool,
-    /// Nothing will be.
+    /// No light follows.
     pub is_last: bool,
 }
 
 impl VolumeRenderer<'_> {
-    /// Depths of surfaces; the stencil is cleared on the way.
-    pub(super) fn depth_pass(&mut self, encoder: &mut wgpu::CommandEncoder, output: Output) {
-        self.report.passes += 1;
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("depth"),
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.targets[&output].depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
-            }),
-            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Depth)),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        for batch in &self.scene.batches {
-            self.scene.draw_depth(&mut pass, batch, &self.programs[&ProgramKey::Depth(depth_key(&batch.key))]);
-        }
-    }
-
-    /// What comes from all around, what glows, and what is behind.
-    pub(super) fn around_pass(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        self.report.passes += 1;
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("all around"),
-            color_attachments: &[Some(drawn_into(
-                &self.targets[&Output::Lit].view,
-                wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-            ))],
-            depth_stencil_attachment: Some(untouched(&self.targets[&Output::Lit].depth)),
-            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Light)),
-            ..Default::default()
-        });
-        pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        for batch in &self.scene.batches {
-            let program = &self.programs[&ProgramKey::Around(self.scene.surface_key(&batch.key))];
-            self.scene.draw_surface(&mut pass, batch, program);
-        }
-        pass.set_pipeline(&self.programs[&ProgramKey::Sky].pipeline);
-        pass.draw(0..3, 0..1);
-    }
-
     /// Counts a light's volumes in the stencil.
     pub(super) fn volume_pass(
-        &mut self,
+        &self,
         encoder: &mut wgpu::CommandEncoder,
-        output: Output,
+        depth: &DepthBuffer,
         slot: usize,
         plan: &FramePlan,
-        draws: &Draws,
+        draws: &VolumeDraws,
     ) {
         let Some(extruded) = &self.extruded[slot] else { return };
-        self.report.passes += 1;
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("volumes"),
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.targets[&output].depth,
-                depth_ops: None,
-                stencil_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store }),
-            }),
-            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Volumes)),
-            ..Default::default()
-        });
+        // Programs of the stencil do not depend on the picture's format.
+        let program = |key: VolumeProgram| self.programs.get(&key, STENCIL_FORMAT);
+        let mut pass = begin_depth_pass(encoder, "volumes", depth.with_stencil_cleared(), &self.clock, Phase::Volumes);
         let [left, top, width, height] = plan.scissor;
         pass.set_scissor_rect(left, top, width, height);
-        pass.set_stencil_reference(KEPT);
-        for (i, (run, draws)) in extruded.runs.iter().zip(&draws.runs).enumerate() {
+        pass.set_stencil_reference(EARLIER_RUN);
+        for (i, (run, [before, behind])) in extruded.runs.iter().zip(&draws.runs).enumerate() {
             pass.set_bind_group(0, &self.scene.frame.group, &[]);
-            for (draw, is_z_pass) in [(&draws[0], true), (&draws[1], false)] {
-                for draw in draw {
-                    let key = volume_key(extruded, draw.part, VolumeUse::Stencil, is_z_pass);
-                    self.draw_faces(&mut pass, run, draw, ProgramKey::Volume(key));
+            for (draws, is_z_pass) in [(before, true), (behind, false)] {
+                for draw in draws {
+                    let key = face_key(extruded, draw.part, VolumeUse::Stencil, is_z_pass);
+                    draw_faces(&mut pass, run, draw, program(VolumeProgram::Faces(key)));
                 }
             }
             if i + 1 < extruded.runs.len() {
-                pass.set_pipeline(&self.programs[&ProgramKey::Keep].pipeline);
+                pass.set_pipeline(&program(VolumeProgram::MergeRun).pipeline);
                 pass.draw(0..3, 0..1);
             }
         }
     }
 
-    fn draw_faces(&self, pass: &mut wgpu::RenderPass<'_>, run: &Run, draw: &DrawCall, key: ProgramKey) {
-        pass.set_pipeline(&self.programs[&key].pipeline);
-        pass.set_bind_group(1, &run.group, &[]);
-        match &run.indices {
-            Some(indices) => {
-                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-                pass.draw_indexed(draw.corners.clone(), 0, 0..draw.instances);
-            }
-            None => pass.draw(draw.corners.clone(), 0..draw.instances),
-        }
-    }
-
-    /// What a light adds where nothing was counted, and in the last pass of a picture of visibility what is behind it.
+    /// Adds a light where no volume was counted. The last pass of a picture of visibility draws its background.
     pub(super) fn light_pass(
-        &mut self,
+        &self,
         encoder: &mut wgpu::CommandEncoder,
-        output: Output,
-        shining: Option<(&Shining, bool)>,
-        ends: Ends,
+        canvas: &VolumeCanvas<'_>,
+        light: Option<(&FrameLight, bool)>,
+        place: PassPlace,
     ) {
-        self.report.passes += 1;
-        let is_mask = output != Output::Lit;
-        let load = match is_mask && ends.is_first {
+        let is_mask = canvas.output != Output::Lit;
+        let load = match is_mask && place.is_first {
             true => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
             false => wgpu::LoadOp::Load,
         };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("light"),
-            color_attachments: &[Some(drawn_into(&self.targets[&output].view, load))],
-            depth_stencil_attachment: Some(match shining {
-                // Nothing was counted for this light: what an earlier one left is in the way.
-                Some((_, false)) => cleared(&self.targets[&output].depth),
-                _ => untouched(&self.targets[&output].depth),
-            }),
-            timestamp_writes: self.stopwatch.as_mut().and_then(|stopwatch| stopwatch.time(Phase::Light)),
-            ..Default::default()
-        });
+        let depth = match light {
+            // No volumes were counted for this light: those of an earlier one are cleared.
+            Some((_, false)) => canvas.depth.with_stencil_cleared(),
+            _ => canvas.depth.read_only(),
+        };
+        let color = canvas.picture.attachment(load);
+        let program = |key: VolumeProgram| self.programs.get(&key, canvas.picture.format);
+        let mut pass = begin_color_pass(encoder, "light", color, Some(depth), &self.clock, Phase::Light);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        if let Some((shining, _)) = shining {
-            let share = f64::from(shining.share);
+        if let Some((light, _)) = light {
+            let share = f64::from(light.share);
             pass.set_blend_constant(wgpu::Color { r: share, g: share, b: share, a: share });
             for batch in &self.scene.batches {
-                let key = ProgramKey::Light(shining.hard, shining.added, hard_key(&batch.key));
-                self.scene.draw_without_page(&mut pass, batch, &self.programs[&key]);
+                let key = VolumeProgram::Light(light.hard, light.blend, hard_key(&batch.key));
+                self.scene.draw_without_page(&mut pass, batch, program(key));
             }
         }
-        if is_mask && ends.is_last {
-            pass.set_pipeline(&self.programs[&ProgramKey::Background].pipeline);
+        if is_mask && place.is_last {
+            pass.set_pipeline(&program(VolumeProgram::Background).pipeline);
             pass.draw(0..3, 0..1);
         }
     }
 
     /// Draws faces into the picture.
+    #[expect(clippy::too_many_arguments, reason = "a pass needs where, what and how")]
     pub(super) fn face_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        output: Output,
+        picture: PictureTarget<'_>,
+        depth: &DepthBuffer,
         slot: usize,
         plan: &FramePlan,
-        draws: &Draws,
+        draws: &VolumeDraws,
         of: VolumeUse,
     ) {
         let Some(extruded) = &self.extruded[slot] else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("faces"),
-            color_attachments: &[Some(drawn_into(
-                &self.targets[&output].view,
-                wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-            ))],
-            depth_stencil_attachment: Some(untouched(&self.targets[&output].depth)),
+            color_attachments: &[Some(picture.attachment(wgpu::LoadOp::Clear(wgpu::Color::BLACK)))],
+            depth_stencil_attachment: Some(depth.read_only()),
             ..Default::default()
         });
         let [left, top, width, height] = plan.scissor;
@@ -177,20 +113,22 @@ impl VolumeRenderer<'_> {
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
         for (run, [before, behind]) in extruded.runs.iter().zip(&draws.runs) {
             for draw in before.iter().chain(behind) {
-                let key = volume_key(extruded, draw.part, of, false);
-                self.draw_faces(&mut pass, run, draw, ProgramKey::Volume(key));
+                let key: FaceKey = face_key(extruded, draw.part, of, false);
+                let program = self.programs.get(&VolumeProgram::Faces(key), picture.format);
+                draw_faces(&mut pass, run, draw, program);
             }
         }
     }
 }
 
-/// Depth and stencil that are only read.
-fn untouched(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops: None }
-}
-
-/// Depth that is only read, and a stencil in which nothing is counted.
-fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
-    let stencil_ops = Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0), store: wgpu::StoreOp::Store });
-    wgpu::RenderPassDepthStencilAttachment { view, depth_ops: None, stencil_ops }
+fn draw_faces(pass: &mut wgpu::RenderPass<'_>, run: &CountedRun, draw: &FaceDraw, program: &Program) {
+    pass.set_pipeline(&program.pipeline);
+    pass.set_bind_group(1, &run.group, &[]);
+    match &run.indices {
+        Some(indices) => {
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(draw.corners.clone(), 0, 0..draw.instances);
+        }
+        None => pass.draw(draw.corners.clone(), 0..draw.instances),
+    }
 }

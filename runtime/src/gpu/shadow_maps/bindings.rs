@@ -1,117 +1,47 @@
-//! What shadow maps are drawn into and read from.
+//! Bind groups of shadow maps: each map's matrix, for the pass that draws it, and what surfaces read.
 
-use super::super::device::{Gpu, GpuError};
-use super::super::maps::texture;
-use super::super::target::DEPTH_FORMAT;
 use super::probe::comparison_sampler;
+use super::textures::{CasterMask, DepthMaps};
+use crate::gpu::device::Gpu;
+use crate::gpu::frame::write_in_order;
 use crate::shadow_maps::{MOST_MAPS, MapProjection, MapSettings, Variant};
 use bytemuck::Zeroable;
 use glam::Vec3;
 use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowViewUniform};
 
-/// Format of pictures of what casts.
-pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
-
-/// What both kinds of picture are for.
-const DRAWN_AND_READ: wgpu::TextureUsages =
-    wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
-
-/// A picture of what casts.
-pub struct Mask {
-    /// In texels.
-    pub size: [u32; 2],
-    /// To draw into and to read.
-    pub view: wgpu::TextureView,
-}
-
-impl Mask {
-    /// One of a size.
-    pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let view = texture(gpu, "what casts", size, 1, MASK_FORMAT, DRAWN_AND_READ).create_view(&Default::default());
-        Self { size, view }
-    }
-
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> u64 {
-        u64::from(self.size[0]) * u64::from(self.size[1])
-    }
-}
-
-/// Maps of depths, one over the other.
-pub struct Depths {
-    /// Edge of each.
-    pub size_texels: u32,
-    /// To draw into, one by one.
-    pub layers: Vec<wgpu::TextureView>,
-    /// To read.
-    pub all: wgpu::TextureView,
-}
-
-impl Depths {
-    /// So many of a size.
-    pub fn new(gpu: &Gpu, size_texels: u32, count: u32) -> Result<Self, GpuError> {
-        let mebibytes = (4 * u64::from(size_texels).pow(2) * u64::from(count)) >> 20;
-        let too_large = || GpuError::MapMemory { mebibytes };
-        if size_texels > gpu.device.limits().max_texture_dimension_2d {
-            return Err(too_large());
-        }
-        let make = || texture(gpu, "shadow maps", [size_texels; 2], count, DEPTH_FORMAT, DRAWN_AND_READ);
-        let texture = gpu.checked("making shadow maps", make).map_err(|_| too_large())?;
-        let layer = |layer| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(wgpu::TextureViewDimension::D2),
-                base_array_layer: layer,
-                array_layer_count: Some(1),
-                ..Default::default()
-            })
-        };
-        let all = texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        });
-        Ok(Self { size_texels, layers: (0..count).map(layer).collect(), all })
-    }
-
-    /// Bytes that they take.
-    pub fn bytes(&self) -> u64 {
-        4 * u64::from(self.size_texels).pow(2) * self.layers.len() as u64
-    }
-}
-
 /// One map's matrix, for the pass that draws it.
-pub struct MapView {
+pub struct MapMatrix {
     buffer: wgpu::Buffer,
-    /// Its binding.
     pub group: wgpu::BindGroup,
 }
 
 /// Layouts and buffers that do not depend on how many maps there are.
-pub struct Bindings {
-    /// Of a map's matrix.
+pub struct MapBindings {
+    /// Layout of a map's matrix.
     pub view_layout: wgpu::BindGroupLayout,
-    /// Of what surfaces read.
+    /// Layout of what surfaces read.
     pub read_layout: wgpu::BindGroupLayout,
-    views: Vec<MapView>,
+    views: Vec<MapMatrix>,
     maps: wgpu::Buffer,
     sampler: Option<wgpu::Sampler>,
     linear: Option<wgpu::Sampler>,
 }
 
-/// What surfaces read.
+/// What surfaces read of shadow maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Reads {
-    /// Maps of depths.
+pub struct MapReads {
+    /// Shadow maps.
     pub has_depths: bool,
     /// How they are read.
     pub tap: ShadowTap,
-    /// A picture of what casts, on the map's place.
+    /// A blurred mask, as the sun sees it.
     pub has_mask: bool,
-    /// A picture of what casts, as the camera sees it.
+    /// A mask of casters projected flat onto the ground, as the camera sees it.
     pub has_flat_mask: bool,
 }
 
-impl Reads {
-    /// What surfaces read under shadow maps; `halfway` is what a comparison sampler reads between light and shade, where one was asked.
+impl MapReads {
+    /// What surfaces read. `halfway` is what a comparison sampler reads between light and shade; none where no sampler compares.
     pub fn new(settings: &MapSettings, has_ground: bool, halfway: Option<f32>) -> Self {
         let filters = |halfway: f32| settings.means.filtering && halfway > 0.0 && halfway < 1.0;
         Self {
@@ -132,16 +62,16 @@ impl Reads {
         self.has_depths && self.tap != ShadowTap::Manual
     }
 
-    /// Slots of the bindings.
+    /// Entries of the group.
     pub fn slots(&self) -> usize {
         let flat = usize::from(self.has_flat_mask);
         flat + 2 * usize::from(self.has_depths) + usize::from(self.has_sampler()) + 2 * usize::from(self.has_mask)
     }
 }
 
-impl Bindings {
+impl MapBindings {
     /// Layouts for what is read.
-    pub fn new(gpu: &Gpu, reads: &Reads) -> Self {
+    pub fn new(gpu: &Gpu, reads: &MapReads) -> Self {
         let uniform = wgpu::BufferBindingType::Uniform;
         let buffer = wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None };
         let view_layout = layout(gpu, "shadow view", wgpu::ShaderStages::VERTEX, &[(0, buffer)]);
@@ -195,13 +125,13 @@ impl Bindings {
         }
     }
 
-    /// What surfaces read, bound, and in how many slots.
+    /// The group of what surfaces read, and its number of entries.
     pub fn read(
         &self,
         gpu: &Gpu,
-        depths: Option<&Depths>,
-        mask: Option<&Mask>,
-        flat: Option<&Mask>,
+        depths: Option<&DepthMaps>,
+        mask: Option<&CasterMask>,
+        flat: Option<&CasterMask>,
     ) -> (wgpu::BindGroup, usize) {
         use wgpu::BindingResource::{Sampler, TextureView};
         let mut entries = Vec::new();
@@ -217,39 +147,46 @@ impl Bindings {
         (bind_group(gpu, "shadow maps", &self.read_layout, entries), slots)
     }
 
-    /// Number of maps' matrices that are bound, each alone.
+    /// Number of matrices with a group each.
     pub fn view_count(&self) -> usize {
         self.views.len()
     }
 
-    /// Writes the maps' matrices.
-    pub fn write(&mut self, gpu: &Gpu, maps: &[MapProjection], eye_m: Vec3, ground_height_m: f32) {
+    /// Writes the maps' matrices, in the encoder's order.
+    pub fn write(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        maps: &[MapProjection],
+        eye_m: Vec3,
+        ground_height_m: f32,
+    ) {
         let mut all = ShadowMapsUniform { count: maps.len() as u32, ..Zeroable::zeroed() };
         for (view, map) in all.views.iter_mut().zip(maps.iter().take(MOST_MAPS)) {
             *view = ShadowViewUniform { ground_height_m, ..map.uniform(eye_m) };
         }
-        gpu.queue.write_buffer(&self.maps, 0, bytemuck::bytes_of(&all));
-        // What is laid flat has no map, and needs the ground's height all the same.
+        write_in_order(gpu, encoder, &self.maps, bytemuck::bytes_of(&all));
+        // A flat mask has no map, but needs the ground's height.
         let only_ground = ShadowViewUniform { ground_height_m, ..Zeroable::zeroed() };
         let views = if maps.is_empty() { &[only_ground][..] } else { &all.views[..maps.len().min(MOST_MAPS)] };
         while self.views.len() < views.len() {
             let buffer = uniform_buffer(gpu, size_of::<ShadowViewUniform>());
             let entries = vec![(0, buffer.as_entire_binding())];
             let group = bind_group(gpu, "shadow view", &self.view_layout, entries);
-            self.views.push(MapView { buffer, group });
+            self.views.push(MapMatrix { buffer, group });
         }
         for (view, uniform) in self.views.iter().zip(views) {
-            gpu.queue.write_buffer(&view.buffer, 0, bytemuck::bytes_of(uniform));
+            write_in_order(gpu, encoder, &view.buffer, bytemuck::bytes_of(uniform));
         }
     }
 
-    /// The binding of a map's matrix, once it has been written.
+    /// The group of a map's matrix, once it has been written.
     pub fn view(&self, index: usize) -> &wgpu::BindGroup {
         &self.views[index].group
     }
 }
 
-/// The layout of a picture to be blurred.
+/// The layout of a mask to be blurred.
 pub fn blur_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let mask = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },
@@ -259,8 +196,8 @@ pub fn blur_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     layout(gpu, "blur", wgpu::ShaderStages::FRAGMENT, &[(0, mask)])
 }
 
-/// A picture to be blurred, bound.
-pub fn blur_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &Mask) -> wgpu::BindGroup {
+/// The group of a mask to be blurred.
+pub fn blur_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mask: &CasterMask) -> wgpu::BindGroup {
     bind_group(gpu, "blur", layout, vec![(0, wgpu::BindingResource::TextureView(&mask.view))])
 }
 

@@ -1,9 +1,9 @@
-//! Buffers that a stage fills once: vertex streams and materials; and the frame's own, written for each frame.
+//! Buffers that are filled once per stage: vertex streams and materials. And uniforms, written for each frame.
 
 use super::batch::{Vertices, wrap_code};
-use super::device::{Gpu, GpuError};
-use super::needs::SceneNeeds;
 use crate::View;
+use crate::gpu::device::{Gpu, GpuError};
+use crate::gpu::plan::SceneNeeds;
 use crate::light::Moment;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
@@ -31,15 +31,13 @@ pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream,
 
 /// The frame's uniform buffers and the materials, with their layout and bindings.
 pub struct FrameBindings {
-    /// The layout.
     pub layout: wgpu::BindGroupLayout,
-    /// The bindings.
     pub group: wgpu::BindGroup,
-    /// What is known of the lamp; none in a set without one.
+    /// The lamp; none in a set without one.
     pub lamp: Option<wgpu::Buffer>,
-    /// The sky in spherical harmonics; none where no page wants it.
+    /// The sky in spherical harmonics; none where no page reads it.
     pub sky: Option<wgpu::Buffer>,
-    /// Slots of the bindings.
+    /// Entries of the group.
     pub slots: usize,
     frame: wgpu::Buffer,
 }
@@ -65,18 +63,27 @@ impl FrameBindings {
         Self { layout, group, lamp, sky, slots, frame }
     }
 
-    /// Writes what a frame needs. A lamp that is not to be seen gives no light.
-    pub fn write(&self, gpu: &Gpu, view: &View, moment: &Moment) {
-        gpu.queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(&moment.uniform(view)));
+    /// Writes the uniforms of a frame, in the encoder's order: passes recorded earlier still see the ones before. A lamp that is not
+    /// shown gives no light.
+    pub fn write(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, view: &View, moment: &Moment) {
+        write_in_order(gpu, encoder, &self.frame, bytemuck::bytes_of(&moment.uniform(view)));
         if let Some(buffer) = &self.lamp {
             let lamp = moment.lamp.map_or(bytemuck::Zeroable::zeroed(), |lamp| lamp.uniform());
-            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of::<LampUniform>(&lamp));
+            write_in_order(gpu, encoder, buffer, bytemuck::bytes_of::<LampUniform>(&lamp));
         }
         if let Some(buffer) = &self.sky {
             let sky = SkyUniform { coefficients: moment.sky_harmonics().map(|c| c.extend(0.0).to_array()) };
-            gpu.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&sky));
+            write_in_order(gpu, encoder, buffer, bytemuck::bytes_of(&sky));
         }
     }
+}
+
+/// Fills a buffer by a copy in the encoder. `Queue::write_buffer` would run before all commands of the encoder, so that a
+/// frame of several lights, or two pictures in one encoder, would see only what was written last.
+pub fn write_in_order(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, contents: &[u8]) {
+    let usage = wgpu::BufferUsages::COPY_SRC;
+    let staged = gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some("staged"), contents, usage });
+    encoder.copy_buffer_to_buffer(&staged, 0, buffer, 0, contents.len() as u64);
 }
 
 fn uniform_buffer(gpu: &Gpu, label: &str, size: usize) -> wgpu::Buffer {

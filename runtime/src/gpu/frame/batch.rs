@@ -1,7 +1,7 @@
-//! Vertices in batches: all triangles that share a program, a page and a texture lie side by side, and are one draw.
+//! Vertices in batches: triangles that share a program, a page and a texture lie side by side, and are drawn at once.
 //!
-//! Triangles are flattened: corners are [`sunbake::scene::Geometry`]'s own, so that what is rasterised is bit for bit what
-//! is traced, whatever matrices put it there.
+//! Vertices are those of [`sunbake::scene::Geometry`], with all transforms applied, so that what is rasterised is bit for bit what
+//! is traced.
 
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
@@ -10,16 +10,16 @@ use std::collections::BTreeMap;
 use sunbake::scene::{Alpha, Wrap};
 use sunbake_shaders::{ColorVertex, PositionVertex, SurfaceVariant, SurfaceVertex, TextureVertex};
 
-/// What triangles of one draw share.
+/// What the triangles of one draw share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BatchKey {
     /// What the surface needs of its program.
     pub surface: SurfaceVariant,
-    /// Whether both sides are drawn; else the one that is counter-clockwise.
+    /// Whether both sides are drawn; else only counter-clockwise faces.
     pub is_two_sided: bool,
-    /// Whether it lies on the ground, where that makes a difference.
+    /// Whether it lies on the ground; false unless a ground was given.
     pub is_ground: bool,
-    /// Whether it is not drawn, and only casts.
+    /// Whether it only casts, and is not drawn.
     pub is_hidden: bool,
     /// The atlas page.
     pub page: u32,
@@ -36,7 +36,7 @@ pub struct TextureKey {
     pub wrap: [u32; 2],
 }
 
-/// One draw: places in the streams.
+/// One draw, as ranges of the streams.
 #[derive(Debug, Clone)]
 pub struct Batch {
     /// What its triangles share.
@@ -64,7 +64,7 @@ pub struct Vertices {
     pub colors: Vec<ColorVertex>,
 }
 
-/// The number by which shaders know a wrap mode.
+/// A wrap mode as shaders know it.
 pub fn wrap_code(wrap: Wrap) -> u32 {
     match wrap {
         Wrap::Repeat => sunbake_shaders::WRAP_REPEAT,
@@ -73,8 +73,8 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
     }
 }
 
-/// Sorts what is drawn into batches and lays out the streams. Given the ground, it gets batches of its own, and so does what casts
-/// and is not drawn.
+/// Sorts triangles into batches and lays out the streams. With a ground, the ground gets batches of its own, and so does what
+/// casts and is not drawn.
 pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
     let mut vertices = Vertices::default();
     let batches = by_key(stage, ground).into_iter().map(|(key, triangles)| {
@@ -132,7 +132,7 @@ fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut 
     let instance = stage.geometry.instance[triangle] as usize;
     let corners = stage.corners(triangle);
     let front_normal = stage.geometry.normal(triangle).as_vec3().to_array();
-    // Corners are taken in the order that is counter-clockwise from the side that is drawn. Mirroring turns it over.
+    // Corners in the order that is counter-clockwise from the drawn side. A mirrored instance reverses it.
     let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
     let order = if is_turned { [0, 2, 1] } else { [0, 1, 2] };
     let texels_per_metre = stage.texels_per_metre(triangle, corners.image_uv);

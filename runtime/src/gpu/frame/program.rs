@@ -1,7 +1,8 @@
-//! Pipelines, one per variant that occurs.
+//! Render pipelines.
 
 use super::batch::BatchKey;
-use super::device::Gpu;
+use super::scene::SceneOnGpu;
+use crate::gpu::device::Gpu;
 use sunbake_shaders::{Attribute, Format, Stream, SurfaceVariant};
 
 /// A pipeline with the vertex streams that it reads, in the order of their slots.
@@ -12,32 +13,32 @@ pub struct Program {
     pub streams: Vec<Stream>,
 }
 
-/// What is run for each corner and each pixel.
-pub struct Source<'a> {
+/// A shader and its entry points.
+pub struct ShaderStages<'a> {
     /// WGSL.
     pub text: &'a str,
-    /// Entry point for corners.
+    /// Entry point of the vertex stage.
     pub vertex: &'a str,
-    /// Entry point for pixels; none where depth and stencil are all that is wanted.
+    /// Entry point of the fragment stage; none where only depth and stencil are written.
     pub fragment: Option<&'a str>,
-    /// What comes with each corner.
+    /// Attributes of each vertex.
     pub attributes: &'a [Attribute],
 }
 
-/// How what comes out of it meets the pictures.
-pub struct State {
+/// The fixed-function state of a pipeline.
+pub struct PipelineState {
     /// The picture drawn into, if any.
     pub target: Option<wgpu::ColorTargetState>,
     /// Depth and stencil, if any.
     pub depth_stencil: Option<wgpu::DepthStencilState>,
-    /// Whether both sides are drawn; else the one that is counter-clockwise.
+    /// Whether both sides are drawn; else only counter-clockwise faces.
     pub is_two_sided: bool,
-    /// Whether depths are clamped to the range of the picture's, where others would not be drawn.
+    /// Whether depths outside of [0, 1] are clamped; else they are cut off.
     pub clamps_depth: bool,
 }
 
-impl State {
-    /// Depth and stencil as told, without clamping.
+impl PipelineState {
+    /// Depth and stencil as given, without clamping.
     pub fn new(
         target: Option<wgpu::ColorTargetState>,
         depth_stencil: wgpu::DepthStencilState,
@@ -48,8 +49,13 @@ impl State {
 }
 
 impl Program {
-    /// A program. Bindings that are absent and that nothing follows are left out.
-    pub fn new(gpu: &Gpu, source: &Source<'_>, groups: &[Option<&wgpu::BindGroupLayout>], state: State) -> Self {
+    /// A program. Absent groups at the end are left out of its layout.
+    pub fn new(
+        gpu: &Gpu,
+        source: &ShaderStages<'_>,
+        groups: &[Option<&wgpu::BindGroupLayout>],
+        state: PipelineState,
+    ) -> Self {
         let label = source.fragment.or(Some(source.vertex));
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label,
@@ -102,7 +108,7 @@ impl Program {
         Self { pipeline, streams }
     }
 
-    /// The program that finds depths. A surface without holes needs no stage for pixels.
+    /// The program that draws depths. A surface without an alpha mask needs no fragment stage.
     pub fn depth(
         gpu: &Gpu,
         key: &BatchKey,
@@ -115,19 +121,41 @@ impl Program {
             true => sunbake_shaders::attributes(key.surface),
             false => sunbake_shaders::attributes(SurfaceVariant::default())[..1].to_vec(),
         };
-        let source = Source {
+        let source = ShaderStages {
             text: &sunbake_shaders::depth_shader(key.surface),
             vertex: if is_cut { "surface_vertex" } else { "depth_vertex" },
             fragment: is_cut.then_some("depth_fragment"),
             attributes: &attributes,
         };
         let depth_stencil = depth_state(format, true, wgpu::CompareFunction::Greater);
-        let state = State::new(None, depth_stencil, key.is_two_sided);
+        let state = PipelineState::new(None, depth_stencil, key.is_two_sided);
         Self::new(gpu, &source, &[Some(frame), None, texture.filter(|_| is_cut)], state)
     }
 }
 
-/// Depth that is compared and, if asked for, written; the stencil left alone.
+/// The vertex stage of surfaces, and a fragment stage.
+pub fn surface_stages<'a>(text: &'a str, fragment: &'a str, attributes: &'a [Attribute]) -> ShaderStages<'a> {
+    ShaderStages { text, vertex: "surface_vertex", fragment: Some(fragment), attributes }
+}
+
+/// State of pipelines that draw where depths are equal.
+pub fn surface_state(
+    format: wgpu::TextureFormat,
+    depth_format: wgpu::TextureFormat,
+    is_two_sided: bool,
+) -> PipelineState {
+    let depth = depth_state(depth_format, false, wgpu::CompareFunction::Equal);
+    PipelineState::new(Some(format.into()), depth, is_two_sided)
+}
+
+/// The program that draws the sky.
+pub fn sky_program(gpu: &Gpu, scene: &SceneOnGpu, state: PipelineState) -> Program {
+    let text = sunbake_shaders::sky_shader();
+    let source = ShaderStages { text: &text, vertex: "screen_vertex", fragment: Some("sky_fragment"), attributes: &[] };
+    Program::new(gpu, &source, &[Some(&scene.frame.layout)], state)
+}
+
+/// Depth that is compared and, if asked for, written. The stencil is left alone.
 pub fn depth_state(
     format: wgpu::TextureFormat,
     writes: bool,
@@ -142,7 +170,7 @@ pub fn depth_state(
     }
 }
 
-/// The streams that attributes come from, in order, and each stream's attributes at their locations.
+/// The streams that attributes come from, in order, and the attributes of each.
 fn by_stream(attributes: &[Attribute]) -> (Vec<Stream>, Vec<Vec<wgpu::VertexAttribute>>) {
     let mut streams: Vec<Stream> = attributes.iter().map(|a| a.stream).collect();
     streams.sort_unstable();

@@ -1,37 +1,36 @@
 //! What pictures of a baked stage call for.
 
-use super::batch::BatchKey;
-use super::census::Census;
-use super::effects::{SceneEffects, of_passes};
-use super::needs::SceneNeeds;
-use super::renderer::Output;
-use super::scene::depth_key;
-use crate::plan::DrawPlan;
+use crate::gpu::frame::{BatchKey, Output, ProgramKey, depth_key, with_pipelines};
+use crate::gpu::plan::{SceneEffects, SceneNeeds, of_passes};
+use crate::plan::{Census, DrawPlan};
 use crate::stage::Stage;
 use std::collections::BTreeSet;
 
-/// A batch's program does not depend on which image it draws with; on its page it does.
+/// A pipeline. It does not depend on the image of a batch, but on how its page is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ProgramKey {
+pub enum BakedProgram {
     /// Depths.
     Depth(BatchKey),
     /// Surfaces.
     Surface(Output, BatchKey),
-    /// The background.
+    /// The sky.
     Sky,
 }
 
-impl ProgramKey {
-    /// The surfaces that it draws, if it does.
-    pub fn batch(&self) -> Option<&BatchKey> {
+impl ProgramKey for BakedProgram {
+    fn batch(&self) -> Option<&BatchKey> {
         match self {
             Self::Depth(key) | Self::Surface(_, key) => Some(key),
             Self::Sky => None,
         }
     }
+
+    fn has_color(&self) -> bool {
+        !matches!(self, Self::Depth(_))
+    }
 }
 
-/// What pictures of a kind call for of a baked stage, of which nothing has been built.
+/// What pictures of a kind call for of a baked stage of which nothing has been built.
 pub fn baked_plan(stage: &Stage, output: Output) -> DrawPlan {
     plan(&SceneNeeds::new(stage, None), output)
 }
@@ -39,7 +38,7 @@ pub fn baked_plan(stage: &Stage, output: Output) -> DrawPlan {
 /// What pictures of a kind call for of a scene.
 pub fn plan(scene: &SceneNeeds, output: Output) -> DrawPlan {
     let totals = |scene: &SceneNeeds| totals(scene, output);
-    let is_surface = |key: &ProgramKey| matches!(key, ProgramKey::Surface(..));
+    let is_surface = |key: &BakedProgram| matches!(key, BakedProgram::Surface(..));
     let lit = programs(scene, output).into_iter().filter(is_surface).count();
     let of_scene = SceneEffects { scene, totals: &totals }.all();
     let needs = of_passes(scene, output, lit).into_iter().chain(of_scene).collect();
@@ -47,15 +46,14 @@ pub fn plan(scene: &SceneNeeds, output: Output) -> DrawPlan {
 }
 
 fn totals(scene: &SceneNeeds, output: Output) -> Census {
-    let programs = programs(scene, output);
-    let surfaces = programs.iter().filter_map(ProgramKey::batch);
-    Census { passes: 2, targets: 2, ..scene.census().with_pipelines(programs.len(), surfaces) }
+    let census = Census { passes: 2, targets: 2, ..scene.census() };
+    with_pipelines(census, programs(scene, output).iter())
 }
 
 /// The programs of an output.
-pub fn programs(scene: &SceneNeeds, output: Output) -> BTreeSet<ProgramKey> {
+pub fn programs(scene: &SceneNeeds, output: Output) -> BTreeSet<BakedProgram> {
     let of_batch =
-        |key: &BatchKey| [ProgramKey::Depth(depth_key(key)), ProgramKey::Surface(output, scene.surface_key(key))];
-    let sky = (output == Output::Lit).then_some(ProgramKey::Sky);
+        |key: &BatchKey| [BakedProgram::Depth(depth_key(key)), BakedProgram::Surface(output, scene.surface_key(key))];
+    let sky = (output == Output::Lit).then_some(BakedProgram::Sky);
     scene.batches.iter().flat_map(of_batch).chain(sky).collect()
 }

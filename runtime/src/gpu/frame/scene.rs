@@ -2,27 +2,28 @@
 
 use super::batch::{Batch, BatchKey, batches};
 use super::buffers::{FrameBindings, upload_streams};
-use super::device::{Gpu, GpuError};
-use super::maps::PageTextures;
-use super::needs::{PageNeeds, SceneNeeds};
+use super::page_textures::PageTextures;
 use super::program::Program;
 use super::textures::BaseTextures;
+use crate::gpu::device::{Gpu, GpuError};
+use crate::gpu::plan::{PageNeeds, SceneNeeds};
+use crate::plan::Census;
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 use sunbake_shaders::{PageVariant, Stream};
 
-/// Surfaces, their maps and their textures.
+/// Surfaces, their maps and their textures: built once per stage.
 pub struct SceneOnGpu {
-    /// What was to be built.
+    /// What was planned.
     pub needs: SceneNeeds,
-    /// Draws.
+    /// What is drawn.
     pub batches: Vec<Batch>,
-    /// What casts and is not drawn, where that was asked for.
+    /// What casts and is not drawn; only with a ground.
     pub hidden: Vec<Batch>,
     /// Vertex buffers.
     pub streams: BTreeMap<Stream, wgpu::Buffer>,
-    /// Maps.
+    /// Textures of each atlas page.
     pub pages: Vec<PageTextures>,
     /// Base colour textures.
     pub textures: BaseTextures,
@@ -76,6 +77,26 @@ impl SceneOnGpu {
         Program::depth(gpu, key, &self.frame.layout, texture, format)
     }
 
+    /// Counts of what is shared by all renderers.
+    pub fn census(&self) -> Census {
+        let page_groups = self.pages.iter().filter(|page| page.bind_group.is_some()).count();
+        let page_slots: usize = self.pages.iter().map(|page| page.slots).sum();
+        let texture_groups = self.textures.bind_groups.len();
+        Census {
+            time_textures: self.pages.iter().map(|page| page.time_textures).sum(),
+            lamp_bindings: usize::from(self.frame.lamp.is_some()),
+            ambient_textures: self.pages.iter().map(|page| page.ambient_textures).sum(),
+            sky_bindings: usize::from(self.frame.sky.is_some()),
+            base_color_textures: self.textures.texture_count,
+            vertex_buffers: self.streams.len(),
+            bind_groups: 1 + page_groups + texture_groups,
+            bindings: self.frame.slots + page_slots + BaseTextures::SLOTS * texture_groups,
+            draws: self.batches.len(),
+            map_bytes: self.pages.iter().map(|page| page.bytes).sum(),
+            ..Census::default()
+        }
+    }
+
     /// Draws depths.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
         self.draw_with(pass, batch, program, batch.key.surface.is_cut);
@@ -109,7 +130,7 @@ impl SceneOnGpu {
     }
 }
 
-/// The key of a batch's depth program, which knows of pages and textures only what holes need.
+/// The key of a batch's depth program. Only alpha masks tell surfaces apart there.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
     let surface = if key.surface.is_cut { key.surface } else { Default::default() };
     BatchKey { surface, page: 0, texture: None, is_ground: false, is_hidden: false, ..*key }

@@ -1,7 +1,7 @@
-//! Pictures back from the GPU: rows are copied at multiples of 256 bytes, and the padding dropped.
+//! Reads pictures back from the GPU. Rows are copied at multiples of 256 bytes, and the padding is dropped.
 
-use super::device::{Gpu, GpuError};
-use super::target::Target;
+use super::target::{DepthBuffer, Picture};
+use crate::gpu::device::{Gpu, GpuError};
 use glam::Vec3;
 
 /// Colours from the floats of a picture of four channels.
@@ -9,15 +9,15 @@ pub fn colors(floats: &[f32]) -> Vec<Vec3> {
     floats.chunks_exact(4).map(|c| Vec3::new(c[0], c[1], c[2])).collect()
 }
 
-/// The picture's floats, `channels` a pixel, in row order.
-pub fn read(gpu: &Gpu, target: &Target, channels: u32, encoder: wgpu::CommandEncoder) -> Result<Vec<f32>, GpuError> {
-    floats(gpu, target.picture.as_image_copy(), target.size, channels, encoder)
+/// The picture's floats, `channels` a pixel, in row order, once the encoder's commands have run.
+pub fn read(gpu: &Gpu, picture: &Picture, channels: u32, encoder: wgpu::CommandEncoder) -> Result<Vec<f32>, GpuError> {
+    floats(gpu, picture.texture.as_image_copy(), picture.size, channels, encoder)
 }
 
-/// The depths beside a picture, as they are stored, in row order.
-pub fn read_depths(gpu: &Gpu, target: &Target) -> Result<Vec<f32>, GpuError> {
-    let source = wgpu::TexelCopyTextureInfo { aspect: wgpu::TextureAspect::DepthOnly, ..target.depths.as_image_copy() };
-    floats(gpu, source, target.size, 1, gpu.device.create_command_encoder(&Default::default()))
+/// Depths as they are stored, in row order: the near plane's distance over the surface's, 0 where there is none.
+pub fn read_depths(gpu: &Gpu, depth: &DepthBuffer) -> Result<Vec<f32>, GpuError> {
+    let source = wgpu::TexelCopyTextureInfo { aspect: wgpu::TextureAspect::DepthOnly, ..depth.texture.as_image_copy() };
+    floats(gpu, source, depth.size, 1, gpu.encoder())
 }
 
 fn floats(
@@ -48,7 +48,7 @@ fn floats(
     Ok(rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, f32>(&row[..row_bytes as usize])).collect())
 }
 
-/// What a buffer holds once all that was handed over is done.
+/// What a buffer holds once all submitted work is done.
 pub fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let (sender, receiver) = std::sync::mpsc::channel();
     // The receiver outlives the callback, so sending cannot fail.

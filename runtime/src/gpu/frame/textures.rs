@@ -1,8 +1,8 @@
 //! Base colour textures: sRGB, with the levels of detail that the CPU made, so that both sample the same numbers.
 
 use super::batch::TextureKey;
-use super::device::{Gpu, GpuError};
-use super::maps::upload;
+use super::page_textures::upload;
+use crate::gpu::device::{Gpu, GpuError};
 use crate::stage::Stage;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,22 +1,23 @@
-//! What a stage's surfaces call for on the GPU, decided before anything is built: [`super::scene::SceneOnGpu`] builds what is
-//! said here, and plans count it.
+//! What a stage's surfaces, their maps and their textures call for. [`SceneOnGpu`](crate::gpu::frame::SceneOnGpu) builds what is
+//! stated here, and plans count it.
 
-use super::batch::{BatchKey, TextureKey, by_key};
-use super::census::Census;
-use crate::playback::{ambient_bytes, page_variant};
+use crate::gpu::frame::{BatchKey, TextureKey, by_key};
+use crate::plan::Census;
+use crate::playback::page_variant;
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use std::collections::BTreeSet;
+use sunbake::maps::{AmbientTextures, GpuTexel};
 use sunbake_shaders::{AmbientModel, PageVariant, Stream};
 
 /// What surfaces, their maps and their textures call for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneNeeds {
-    /// Draws.
+    /// What is drawn.
     pub batches: BTreeSet<BatchKey>,
-    /// What casts and is not drawn, where that was asked for.
+    /// What casts and is not drawn; only with a ground.
     pub hidden: BTreeSet<BatchKey>,
-    /// Maps.
+    /// Atlas pages.
     pub pages: Vec<PageNeeds>,
     /// Bits of a stored time.
     pub bits: u32,
@@ -34,7 +35,7 @@ pub struct PageNeeds {
 }
 
 impl SceneNeeds {
-    /// What a stage calls for; given its ground, as batches of their own, and with what casts and is not drawn.
+    /// What a stage calls for. With a ground, the ground is batches of its own, and what casts and is not drawn is included.
     pub fn new(stage: &Stage, ground: Option<&Ground>) -> Self {
         Self::of(stage, by_key(stage, ground).into_keys())
     }
@@ -61,12 +62,12 @@ impl SceneNeeds {
         self.batches.iter().chain(&self.hidden)
     }
 
-    /// How a batch's page is read.
+    /// How programs read a batch's page.
     pub fn variant(&self, key: &BatchKey) -> &PageVariant {
         &self.pages[key.page as usize].variant
     }
 
-    /// The key of a batch's program: pages that programs read alike share one.
+    /// The key of a batch's program. Pages that programs read alike share one.
     pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
         let variant = self.variant(key);
         let page = self.pages.iter().position(|page| page.variant == *variant).unwrap_or(0) as u32;
@@ -88,7 +89,7 @@ impl SceneNeeds {
         self.surfaces().flat_map(of_key).flatten().collect()
     }
 
-    /// Whether some page wants the sky in spherical harmonics.
+    /// Whether some page reads the sky in spherical harmonics.
     pub fn has_sky(&self) -> bool {
         self.pages.iter().any(|page| page.variant.ambient == AmbientModel::Sky)
     }
@@ -134,8 +135,18 @@ impl PageNeeds {
     }
 
     fn bytes(&self, bits: u32) -> u64 {
-        // A layer is two textures of four times.
-        let of_times = u64::from(self.variant.layer_count() + self.variant.lamp_layer_count) * u64::from(bits);
-        self.texels * (of_times + ambient_bytes(&self.variant))
+        let variant = &self.variant;
+        let texel = GpuTexel {
+            layers: variant.layer_count() + variant.lamp_layer_count,
+            bits,
+            ambient: match variant.ambient {
+                AmbientModel::Hemisphere => AmbientTextures::None,
+                AmbientModel::Occlusion => AmbientTextures::Occlusion,
+                AmbientModel::Bent => AmbientTextures::Bent,
+                AmbientModel::Sky => AmbientTextures::Sky,
+            },
+            sides: if variant.has_backs { 2 } else { 1 },
+        };
+        self.texels * texel.bytes()
     }
 }

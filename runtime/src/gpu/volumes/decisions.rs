@@ -1,0 +1,106 @@
+//! Decisions about the effects of shadow volumes.
+
+use super::VolumeSettings;
+use super::plan::{LightNeeds, VolumeNeeds, light_blend};
+use super::programs::FaceKey;
+use crate::gpu::plan::SceneNeeds;
+use crate::plan::{Census, Effect, Need, Reason, Uncounted};
+use crate::volumes::{CasterCounts, Mode};
+use sunbake_shaders::VolumeUse;
+
+/// Decides about each effect of shadow volumes.
+pub struct VolumeDecisions<'a> {
+    pub needs: &'a VolumeNeeds,
+    pub scene: &'a SceneNeeds,
+    pub counts: &'a CasterCounts,
+    pub settings: &'a VolumeSettings,
+}
+
+impl VolumeDecisions<'_> {
+    /// All of them.
+    pub fn all(&self) -> Vec<Need> {
+        vec![
+            self.sun(),
+            self.sun_samples(),
+            self.counted(true),
+            self.counted(false),
+            self.open_meshes(),
+            self.found(),
+            self.runs(),
+            self.shown(),
+        ]
+    }
+
+    fn saved_by(&self, change: impl Fn(&mut VolumeNeeds)) -> Census {
+        let mut without = self.needs.clone();
+        change(&mut without);
+        self.needs.totals(self.scene).beyond(&without.totals(self.scene))
+    }
+
+    fn any(&self, is: impl Fn(&LightNeeds) -> bool) -> bool {
+        self.needs.lights.iter().any(is)
+    }
+
+    /// An effect that, before a picture, may only be needed.
+    fn possible(&self, effect: Effect, is_on: bool, drop: impl Fn(&mut VolumeNeeds)) -> Need {
+        let reason = if is_on && !self.needs.is_exact { Reason::Possible } else { Reason::Usual };
+        Need::new(effect, is_on.then(|| self.saved_by(drop)), reason)
+    }
+
+    fn sun(&self) -> Need {
+        let is_on = self.any(|light| !light.is_lamp());
+        self.possible(Effect::SunVolumes, is_on, |needs| needs.lights.retain(LightNeeds::is_lamp))
+    }
+
+    fn sun_samples(&self) -> Need {
+        let suns = self.needs.lights.iter().filter(|light| !light.is_lamp());
+        let count = suns.map(|light| light.count).max().unwrap_or(0);
+        let one = |needs: &mut VolumeNeeds| {
+            let output = needs.output;
+            for light in needs.lights.iter_mut().filter(|light| light.count > 1) {
+                (light.count, light.shaded, light.blend) = (1, light.shaded.min(1), light_blend(output, 1));
+            }
+        };
+        Need::new(Effect::SoftSun, (count > 1).then(|| self.saved_by(one)), Reason::Count(count))
+    }
+
+    fn counted(&self, is_z_pass: bool) -> Need {
+        let effect = if is_z_pass { Effect::ZPass } else { Effect::ZFail };
+        let is_on = self.any(|light| light.counts(is_z_pass));
+        self.possible(effect, is_on, |needs| {
+            let is_kept = |key: &FaceKey| key.of != VolumeUse::Stencil || key.is_z_pass != is_z_pass;
+            needs.lights.iter_mut().for_each(|light| light.faces.retain(is_kept));
+        })
+    }
+
+    fn open_meshes(&self) -> Need {
+        let count = self.counts.open_bodies;
+        let triangles = self.counts.triangles - self.counts.solid_triangles;
+        let need = Need::new(Effect::OpenMeshes, (count > 0).then(Census::default), Reason::Count(count));
+        need.with(Uncounted::Prisms(triangles))
+    }
+
+    fn found(&self) -> Need {
+        let is_on = self.settings.mode == Mode::Gpu;
+        let saved = is_on.then(|| Census { volume_buffers: 2, ..Census::default() });
+        Need::new(Effect::SilhouettesByGpu, saved, Reason::Usual)
+    }
+
+    fn runs(&self) -> Need {
+        let is_on = self.any(|light| light.runs > 1);
+        self.possible(Effect::SeveralRuns, is_on, |needs| {
+            for light in needs.lights.iter_mut().filter(|light| light.runs > 1) {
+                light.buffers.0 -= light.runs - 1;
+                light.runs = 1;
+            }
+        })
+    }
+
+    fn shown(&self) -> Need {
+        let is_on = self.any(|light| light.faces.iter().any(|key| key.of == VolumeUse::Show));
+        let hide = |needs: &mut VolumeNeeds| {
+            needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| key.of == VolumeUse::Stencil));
+        };
+        Need::new(Effect::ShownVolumes, is_on.then(|| self.saved_by(hide)), Reason::Usual)
+    }
+}

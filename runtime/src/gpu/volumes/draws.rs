@@ -1,0 +1,67 @@
+//! What is drawn of the volumes for a view.
+
+use super::extruded::{CountedRun, Extruded};
+use crate::volumes::{FramePlan, Part, Savings};
+use std::ops::Range;
+use sunbake_shaders::VolumeCorners;
+
+/// One draw call over faces of volumes.
+#[derive(Debug, Clone)]
+pub struct FaceDraw {
+    /// Which part, where the vertex shader finds silhouettes; else walls.
+    pub part: Part,
+    /// Vertices, or indices where the CPU listed them.
+    pub corners: Range<u32>,
+    /// Instances.
+    pub instances: u32,
+}
+
+/// Draw calls of each run.
+pub struct VolumeDraws {
+    /// For each run, what is counted in front of the surface, and what behind it.
+    pub runs: Vec<[Vec<FaceDraw>; 2]>,
+}
+
+impl VolumeDraws {
+    /// The draws of a plan.
+    pub fn new(extruded: &Extruded, plan: &FramePlan, savings: Savings) -> Self {
+        let of_run = |run| [true, false].map(|is_z_pass| draws(extruded, run, plan, is_z_pass, savings));
+        let runs = match plan.draws_anything() {
+            true => extruded.runs.iter().map(of_run).collect(),
+            false => Vec::new(),
+        };
+        Self { runs }
+    }
+
+    /// All draws, and whether each is counted in front of the surface.
+    pub fn all(&self) -> impl Iterator<Item = (&FaceDraw, bool)> {
+        self.runs.iter().flat_map(|[before, behind]| {
+            before.iter().map(|draw| (draw, true)).chain(behind.iter().map(|draw| (draw, false)))
+        })
+    }
+
+    /// Number of triangles.
+    pub fn triangles(&self) -> usize {
+        self.all().map(|(draw, _)| draw.corners.len() * draw.instances as usize).sum::<usize>() / 3
+    }
+}
+
+fn draws(extruded: &Extruded, run: &CountedRun, plan: &FramePlan, is_z_pass: bool, savings: Savings) -> Vec<FaceDraw> {
+    let draw = |part, instances| move |corners| FaceDraw { part, corners, instances };
+    if extruded.kind.1 == VolumeCorners::Indexed {
+        return plan
+            .ranges(&run.parts, is_z_pass, &Part::ALL, |_| true)
+            .into_iter()
+            .map(draw(Part::Walls, 1))
+            .collect();
+    }
+    let walls = |doubles: bool| {
+        let is_wanted = |caster| extruded.may_double(caster, savings) == doubles;
+        let ranges = plan.ranges(&run.parts, is_z_pass, &[Part::Walls], is_wanted);
+        ranges.into_iter().map(draw(Part::Walls, 1 + u32::from(doubles)))
+    };
+    let caps = [Part::Caps, Part::DarkCaps]
+        .into_iter()
+        .flat_map(|part| plan.ranges(&run.parts, is_z_pass, &[part], |_| true).into_iter().map(draw(part, 1)));
+    walls(false).chain(walls(true)).chain(caps).collect()
+}

@@ -1,0 +1,130 @@
+//! Every text of the effect plan: names, reasons, costs, and what turns an effect on or off.
+
+mod census;
+mod texts;
+
+use super::{Effect, Need, Reason, Uncounted};
+use texts::{EffectText, SUN_DOWN, TEXTS};
+
+impl Effect {
+    /// Its name, in reports and manifests.
+    pub fn name(self) -> &'static str {
+        text(self).name
+    }
+}
+
+fn text(effect: Effect) -> &'static EffectText {
+    // Entries are in the order of the enum, which a test checks.
+    let text = &TEXTS[effect as usize];
+    debug_assert_eq!(text.effect, effect);
+    text
+}
+
+/// The flag or property that would turn an effect off or on.
+pub fn toggled_by(need: &Need) -> &'static str {
+    let text = text(need.effect);
+    if need.is_on { text.off_by } else { text.on_by }
+}
+
+/// What an effect takes; where it is off, what it would take.
+pub fn cost(need: &Need) -> String {
+    let EffectText { would_take, also_takes, .. } = *text(need.effect);
+    let besides = match need.uncounted {
+        Uncounted::Nothing => also_takes.to_owned(),
+        Uncounted::Prisms(triangles) => format!("prisms of all {triangles} triangles, whichever way they face"),
+        Uncounted::Comparisons(count) => format!("{count} comparisons a pixel"),
+        Uncounted::Rays(count) => rays(need.effect, count),
+    };
+    if !need.is_on {
+        let is_of_rays = matches!(need.uncounted, Uncounted::Rays(_));
+        return if is_of_rays { besides } else { would_take.to_owned() };
+    }
+    let counted = need.takes.in_words();
+    match (counted.is_empty(), besides.is_empty()) {
+        (true, true) => "nothing of its own".into(),
+        (true, false) => besides,
+        (false, true) => counted,
+        (false, false) => format!("{counted}; {besides}"),
+    }
+}
+
+fn rays(effect: Effect, count: Option<u32>) -> String {
+    match (effect, count) {
+        (Effect::TruthOfDisc, None) => "N rays a pixel and light, not one".into(),
+        (Effect::TruthOfDisc, Some(n)) => format!("{n} rays a pixel and light"),
+        (_, None) => "a ray a pixel".into(),
+        (_, Some(n)) => format!("{n} rays a pixel"),
+    }
+}
+
+/// Why an effect is on or off.
+pub fn why(need: &Need) -> String {
+    let text = text(need.effect);
+    match need.reason {
+        Reason::Count(count) => of_count(need.effect, count),
+        Reason::Slices(maps) => format!("{maps} slices of the view have a map each"),
+        Reason::CubeFaces(maps) => format!("{maps} faces of a cube around the sun are seen"),
+        Reason::Gathered => "the shader compares what a sampler gathers, each texel with the receiver's plane".into(),
+        Reason::SunDown => SUN_DOWN.into(),
+        Reason::VisibilityPicture => "surfaces tell how much of the light they see".into(),
+        Reason::Unread => unread(need.effect).into(),
+        Reason::Possible => possible(need.effect).into(),
+        Reason::Usual => if need.is_on { text.why_on } else { text.why_off }.into(),
+    }
+}
+
+/// What it depends on is not read.
+fn unread(effect: Effect) -> &'static str {
+    match effect {
+        Effect::Penumbra => "no times of a sun are read",
+        Effect::Lamp => "the set has a lamp, and its times are not read",
+        _ => "no times are read",
+    }
+}
+
+/// It depends on the view and the light.
+fn possible(effect: Effect) -> &'static str {
+    match effect {
+        Effect::SunVolumes => "the sun may be up",
+        Effect::ZPass => "the eye may be outside of volumes whose caps are hidden",
+        Effect::ZFail => "the eye may come into some volume, or a cap show",
+        Effect::SeveralRuns => "there are more than 255 triangles, which may overlap",
+        _ => "something may be in shadow",
+    }
+}
+
+/// Reasons that are counts.
+fn of_count(effect: Effect, count: usize) -> String {
+    let [one, several] = match effect {
+        Effect::BaseColorTextures => ["image is drawn as a base colour", "images are drawn as base colours"],
+        Effect::VertexColors => ["batch has vertex colours", "batches have vertex colours"],
+        Effect::AlphaTest => ["batch has an alpha mask", "batches have alpha masks"],
+        Effect::TwoSidedFaces => ["batch shows both sides", "batches show both sides"],
+        Effect::DiscLanes => ["lane is in the set", "lanes are in the set"],
+        Effect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
+        Effect::SixteenBitTimes => return format!("times have {count} bits"),
+        Effect::SeveralPages => ["page holds all surfaces", "pages hold the surfaces"],
+        Effect::SoftSun => ["sun: its centre, with hard edges", "suns share its disc"],
+        Effect::OpenMeshes => ["mesh that casts is open", "meshes that cast are open"],
+        Effect::SeveralMaps => ["map holds all that may be in shadow", "maps hold what may be in shadow"],
+        _ => ["", ""],
+    };
+    match count {
+        0 => format!("no {one}"),
+        1 => format!("1 {one}"),
+        n => format!("{n} {several}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_in_the_order_of_the_effects() {
+        for (i, text) in TEXTS.iter().enumerate() {
+            assert_eq!(text.effect as usize, i, "{}", text.name);
+            assert!(!text.name.is_empty() && !text.off_by.is_empty() && !text.on_by.is_empty(), "{:?}", text.effect);
+        }
+    }
+}
