@@ -9,15 +9,12 @@ use sunbake_runtime::compare::{Agreement, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Truth, Volumes};
+use sunbake_runtime::testing::masks::gpu;
 use sunbake_runtime::testing::{bake, equinox, standing_sun, view};
 use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage};
 
 const SIZE: [u32; 2] = [96, 96];
 const RADIUS_RAD: f64 = 0.0047;
-
-fn gpu() -> Gpu {
-    Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
-}
 
 fn techniques<'a>(gpu: &'a Gpu, stage: &'a Stage) -> Vec<Box<dyn Technique + 'a>> {
     let map = |variant| Box::new(ShadowMaps::new(gpu, stage, MapSettings::new(variant)).unwrap()) as Box<dyn Technique>;

@@ -7,9 +7,9 @@ use sunbake::maps::Bits;
 use sunbake::scene::{Material, Scene};
 use sunbake::testing::{SceneBuilder, floor, opaque};
 use sunbake_runtime::compare::{Agreement, color_difference, edges, visibility_difference};
-use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::plan::Census;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, Technique, Truth};
+use sunbake_runtime::testing::masks::gpu;
 use sunbake_runtime::testing::{bake, equinox, table_line, view, with_lamp};
 use sunbake_runtime::{Filter, Moment, Raster, Shot, Stage};
 
@@ -40,10 +40,6 @@ fn stage(has_sun: bool, radius_m: f64, bits: Bits) -> Stage {
 
 fn shot(stage: &Stage) -> Shot<'_> {
     Shot::new(stage, view(stage, DVec3::new(3.5, 4.0, 5.5), DVec3::new(0.0, 0.3, 0.0), [192, 128]))
-}
-
-fn gpu() -> Gpu {
-    Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
 }
 
 #[test]

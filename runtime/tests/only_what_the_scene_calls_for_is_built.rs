@@ -4,15 +4,16 @@ use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
-use sunbake_runtime::gpu::{Gpu, VolumeSettings};
+use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::plan::Census;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{BakedGpu, ShadowMaps, Technique, Volumes};
+use sunbake_runtime::testing::masks::gpu;
 use sunbake_runtime::testing::{bake, bake_lanes, equinox, standing_sun, view};
 use sunbake_runtime::{Filter, Moment, Shot, Stage};
 
 fn census(stage: &Stage, draw_visibility: bool) -> Census {
-    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let gpu = gpu();
     let shot = Shot::new(stage, view(stage, DVec3::new(4.0, 3.0, 5.0), DVec3::ZERO, [16, 16]));
     let moment = Moment::new(stage.path.as_ref(), 0.5);
     let mut technique = BakedGpu::new(&gpu, stage, Filter::Bilinear).unwrap();
@@ -127,7 +128,7 @@ fn textures_holes_colours_and_second_sides_cost_only_the_scenes_that_have_them()
 
 /// What volumes build for a plain scene seen from aside, and where its casters are counted.
 fn volume_census(scene: sunbake::scene::Scene, settings: VolumeSettings, eye: DVec3) -> (Census, [usize; 2]) {
-    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let gpu = gpu();
     let stage = Stage::plain(scene, Some(standing_sun(DVec3::new(0.3, 1.0, 0.2), 0.0)));
     let shot = Shot::new(&stage, view(&stage, eye, DVec3::new(0.4, 0.3, 0.2), [16, 16]));
     let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
@@ -173,7 +174,7 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
     // Nothing casts: no volumes, no pass of them, no pipeline. The sun is down: no light either.
     let (found, _) = volume_census(ground().build(), settings, aside);
     assert_eq!((found.passes, found.stencil_pipelines, found.pipelines), (2, 0, 3));
-    let gpu = Gpu::open().unwrap();
+    let gpu = gpu();
     let stage = Stage::plain(ground().soup(&cube()).build(), Some(standing_sun(DVec3::new(1.0, -0.3, 0.0), 0.0)));
     let shot = Shot::new(&stage, view(&stage, aside, DVec3::ZERO, [16, 16]));
     let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
@@ -184,7 +185,7 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
 
 /// What shadow maps of a block on the ground build, with something below the ground or not.
 fn of_maps(variant: Variant, edit: impl Fn(SceneBuilder) -> SceneBuilder) -> Census {
-    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let gpu = gpu();
     let scene = edit(SceneBuilder::new().soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0))).build();
     let stage = Stage::plain(scene, Some(standing_sun(DVec3::new(0.3, 1.0, 0.2), 0.0047)));
     let shot = Shot::new(&stage, view(&stage, DVec3::new(4.0, 3.0, 5.0), DVec3::ZERO, [16, 16]));
@@ -271,7 +272,7 @@ fn a_map_tests_alpha_only_where_something_has_holes() {
 
 #[test]
 fn a_map_is_kept_while_neither_the_sun_nor_what_it_follows_moves() {
-    let gpu = Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers");
+    let gpu = gpu();
     let scene = SceneBuilder::new().soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0)).soup(&cube()).build();
     let stage = Stage::plain(scene, Some(equinox(35.0)));
     let shots = [DVec3::new(4.0, 3.0, 5.0), DVec3::new(1.5, 1.0, 2.0)]

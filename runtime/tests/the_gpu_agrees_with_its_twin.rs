@@ -7,12 +7,9 @@ use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque, pseud
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
+use sunbake_runtime::testing::masks::gpu;
 use sunbake_runtime::testing::{bake, bake_lanes, equinox, table_line, twins, view};
 use sunbake_runtime::{AmbientModel, Filter, Shot, Stage};
-
-fn gpu() -> Gpu {
-    Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
-}
 
 /// Prints the table and returns what it holds.
 fn compare(name: &str, gpu: &Gpu, stage: &Stage, eye: DVec3, target: DVec3, filter: Filter) -> Vec<Agreement> {

@@ -6,16 +6,12 @@ use sunbake::lamp::{LampKey, LampPath};
 use sunbake::scene::{Material, Scene};
 use sunbake::testing::{SceneBuilder, floor, icosphere, opaque};
 use sunbake_runtime::compare::{Agreement, MaskAgreement, color_difference, edges, mean, visibility_difference};
-use sunbake_runtime::gpu::{Gpu, VolumeSettings};
+use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
-use sunbake_runtime::testing::masks::mask;
+use sunbake_runtime::testing::masks::{gpu, mask};
 use sunbake_runtime::testing::{equinox, standing_sun, view};
 use sunbake_runtime::{Moment, Raster, Shot, Stage};
-
-fn gpu() -> Gpu {
-    Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
-}
 
 fn scene() -> Scene {
     let glowing = Material { emissive: Vec3::new(0.2, 0.05, 0.0), ..opaque() };
