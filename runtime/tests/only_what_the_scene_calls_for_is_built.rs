@@ -102,7 +102,7 @@ fn ambient_occlusion_is_bound_only_where_a_set_has_it() {
 }
 
 #[test]
-fn textures_holes_colours_and_second_sides_cost_only_the_scenes_that_have_them() {
+fn textures_alpha_masks_colours_and_second_sides_cost_only_the_scenes_that_have_them() {
     let (builder, image) = SceneBuilder::new().image(4, 4, vec![[90, 120, 60, 255]; 16]);
     let texture = TextureRef { image, texcoord: 0, image_from_texcoord: Mat3::IDENTITY, wrap: [Wrap::Repeat; 2] };
     let mesh = |has_colors: bool| {
@@ -255,7 +255,7 @@ fn where_nothing_can_be_in_shadow_there_is_no_map() {
 }
 
 #[test]
-fn a_map_tests_alpha_only_where_something_has_holes() {
+fn a_map_tests_alpha_only_where_something_has_an_alpha_mask() {
     let leaf = |builder: SceneBuilder| {
         let triangles = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0);
         let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();

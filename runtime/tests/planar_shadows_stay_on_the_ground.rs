@@ -20,7 +20,7 @@ fn on_ground(shot: &Shot) -> Vec<(usize, DVec3)> {
 }
 
 #[test]
-fn j1_a_light_level_with_the_plane_gives_numbers() {
+fn j1_a_light_level_with_the_plane_gives_finite_numbers() {
     let gpu = gpu();
     for height in [0.0, 1e-30, 1e-12, 1e-6, 1e-3, 0.02] {
         let scene = ground().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5)).build();

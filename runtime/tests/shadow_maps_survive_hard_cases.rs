@@ -154,7 +154,7 @@ fn m3_a_caster_above_the_map_still_casts() {
 }
 
 #[test]
-fn m4_what_is_on_no_map_is_lit_and_borders_do_not_smear() {
+fn m4_receivers_outside_the_map_are_lit_and_borders_do_not_smear() {
     let gpu = gpu();
     let roof = block(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 1.2, 1.0));
     let stage = under_sun(ground().soup(&roof).build(), ASLANT);
@@ -316,7 +316,7 @@ fn m7_shadows_stay_where_they_are_as_the_camera_moves_and_turns() {
 }
 
 #[test]
-fn m8_views_from_a_millimetre_to_a_hundred_kilometres_are_numbers() {
+fn m8_views_from_a_millimetre_to_a_hundred_kilometres_are_finite() {
     let gpu = gpu();
     let scene = SceneBuilder::new()
         .soup(&floor(Vec2::splat(-5e4), Vec2::splat(5e4), 0.0))

@@ -28,7 +28,7 @@ fn values(file: &Path) -> Vec<u16> {
 }
 
 #[test]
-fn volumes_and_truth_draw_one_mask_and_the_plan_is_told() {
+fn volumes_and_truth_draw_one_mask_and_the_plan_is_printed() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
     let mut masks = Vec::new();
@@ -65,7 +65,7 @@ fn volumes_and_truth_draw_one_mask_and_the_plan_is_told() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused_with_what_to_do() {
+fn impossible_requests_are_refused_with_advice() {
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("picture.png");
     let broken = folder.path().join("broken.glb");

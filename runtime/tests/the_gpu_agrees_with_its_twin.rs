@@ -161,7 +161,7 @@ fn posts_under_a_disc_of_lanes() {
 }
 
 #[test]
-fn textures_holes_mirrors_colours_and_lamps() {
+fn textures_alpha_masks_mirrors_colours_and_lamps() {
     let gpu = gpu();
     for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
         let stage = bake(everything(wrap), Some(equinox(35.0)), 24, Bits::Eight);

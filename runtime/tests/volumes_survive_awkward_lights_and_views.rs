@@ -25,7 +25,7 @@ fn with_range(stage: &Stage, range_m: f32) -> Moment {
 }
 
 #[test]
-fn one_may_look_into_a_finite_volume_through_its_far_end() {
+fn a_view_through_the_far_end_of_a_finite_volume_is_right() {
     let scene = ground().block(Vec3::new(0.8, 0.3, -0.5), Vec3::new(1.0, 1.3, 0.5)).build();
     let stage = under_lamp(scene, DVec3::new(0.0, 0.8, 0.0));
     let views = [
@@ -89,7 +89,7 @@ fn a_room_modelled_from_inside_shades_what_is_in_it() {
 }
 
 #[test]
-fn what_culling_leaves_is_enough() {
+fn culling_removes_nothing_that_shows() {
     let gpu = gpu();
     // Surfaces that fill part of the picture, whose caster is out of view: the scissor rectangle is as small as it gets.
     let slab = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 0.0);
@@ -143,7 +143,7 @@ fn a_grazing_sun_loses_shadows_no_deeper_than_a_64th_of_a_pixel() {
 }
 
 #[test]
-fn lights_that_follow_each_other_find_nothing_of_the_last() {
+fn no_light_inherits_the_stencil_of_the_last() {
     let gpu = gpu();
     // The sun goes its way before one renderer, and stands still before fresh ones.
     let scene = || ground().block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.4, 1.2, 0.5)).build();

@@ -128,7 +128,7 @@ fn a_box_under_a_point_sun_builds_the_least() {
 }
 
 #[test]
-fn what_surfaces_have_adds_its_own() {
+fn each_property_of_surfaces_adds_its_own_resources() {
     let gpu = gpu();
     let (least, least_plan) = lit(&gpu, &plain_box(0.0));
     let holds = |stage: &Stage, effect: &str, adds: Census| {
@@ -157,7 +157,7 @@ fn what_surfaces_have_adds_its_own() {
 }
 
 #[test]
-fn what_maps_hold_adds_its_own() {
+fn each_kind_of_map_adds_its_own_resources() {
     let gpu = gpu();
     let stage = plain_box(0.0047);
     let of_texels = |bytes: u64| texels(&stage) as u64 * bytes;
@@ -404,7 +404,7 @@ fn every_variant_of_maps_builds_what_is_planned_and_adds_its_own() {
 }
 
 #[test]
-fn every_verdict_says_why_what_it_costs_and_what_turns_it_over() {
+fn every_effect_states_why_its_cost_and_what_toggles_it() {
     let gpu = gpu();
     let stage = with_lamp(bake(on_ground(with_lid), sun(0.0047), CELL, Bits::Eight), &lamp_at(ASIDE), CELL);
     let shot = shot(&stage, ASIDE);

@@ -93,7 +93,7 @@ fn cases() -> Vec<Case> {
 }
 
 #[test]
-fn ambient_visibility_is_what_geometry_says() {
+fn ambient_visibility_matches_geometry() {
     for case in cases() {
         let errors = case.errors(rays(256));
         let worst = errors.iter().fold(0.0f64, |worst, error| worst.max(error.abs()));
@@ -128,7 +128,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 }
 
 #[test]
-fn an_error_that_is_asked_for_is_kept_with_few_rays_where_few_do() {
+fn a_requested_error_is_met_with_few_rays_where_few_suffice() {
     for error in [0.05, 0.02, 0.01] {
         let (mut within, mut all) = (0, 0);
         for case in cases() {
@@ -149,7 +149,7 @@ fn an_error_that_is_asked_for_is_kept_with_few_rays_where_few_do() {
 }
 
 #[test]
-fn one_hard_texel_among_easy_ones_is_not_passed_over() {
+fn a_hard_texel_among_easy_ones_gets_its_rays() {
     // Fifteen points in the open, and one beside a wall and under bars, again and again.
     let wall = block(Vec3::new(-0.2, 0.0, -40.0), Vec3::new(0.0, 1.5, 40.0));
     let bars: Vec<[Vec3; 3]> = (0..40)
@@ -223,7 +223,7 @@ fn visibility_in_box(from: DVec3, normal: DVec3, half: DVec3, reach: f64) -> f64
 }
 
 #[test]
-fn a_convex_solid_on_the_ground_sees_the_sky_by_how_far_it_leans() {
+fn a_convex_solid_on_the_ground_sees_the_sky_by_its_slope() {
     // A wedge: its slope leans by 30, 45 and 70 degrees, its back stands upright.
     for degrees in [30.0f64, 45.0, 70.0] {
         let top = degrees.to_radians().tan() as f32;
@@ -249,7 +249,7 @@ fn a_convex_solid_on_the_ground_sees_the_sky_by_how_far_it_leans() {
 }
 
 #[test]
-fn a_round_thing_alone_reads_one_whatever_its_facets() {
+fn a_sphere_alone_reads_one_at_any_number_of_facets() {
     for level in [0, 1, 2] {
         let traced = Traced::new(SceneBuilder::new().soup(&icosphere(level)).build());
         let count = traced.geometry.triangles.len();
@@ -263,7 +263,7 @@ fn a_round_thing_alone_reads_one_whatever_its_facets() {
 }
 
 #[test]
-fn bent_normals_point_to_what_is_free() {
+fn bent_normals_point_to_the_unoccluded_directions() {
     let open = &cases()[0];
     let (found, _) = ambient_at(&open.traced, &open.points, rays(256));
     assert!(found.iter().all(|e| e.bent.as_dvec3().distance(DVec3::Y * (2.0 / 3.0)) < 0.01));
@@ -281,7 +281,7 @@ fn bent_normals_point_to_what_is_free() {
 }
 
 #[test]
-fn the_sky_in_harmonics_is_the_integral_over_what_is_free() {
+fn sky_harmonics_are_the_integral_over_the_unoccluded_directions() {
     // In the open, degree by degree: 1, 2/3 and 1/4 of the functions at the normal (Ramamoorthi and Hanrahan, 2001).
     let open = &cases()[0];
     let (found, _) = ambient_at(&open.traced, &open.points, rays(1024));

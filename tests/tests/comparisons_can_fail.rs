@@ -126,7 +126,7 @@ fn one_corrupted_texel_is_caught_by_comparing_with_the_sound_set() {
 }
 
 #[test]
-fn what_is_compared_with_itself_is_all_zeros_and_two_runs_agree() {
+fn a_set_compared_with_itself_has_no_error_and_two_runs_agree() {
     let desk = tempfile::tempdir().unwrap();
     bake_into(desk.path(), "set", &posts(0.0), |settings| settings);
     let set = desk.path().join("set");

@@ -23,7 +23,7 @@ fn timeless(mut report: Value) -> Value {
 }
 
 #[test]
-fn a_scene_compared_with_itself_is_all_zeros_and_two_runs_agree() {
+fn a_technique_compared_with_itself_has_no_error_and_two_runs_agree() {
     let (temporary, set) = folder_with_set();
     let name = "baked:16:lanes3:filtered";
     let report = |folder: &str, against: &str| {
@@ -64,7 +64,7 @@ fn a_scene_is_baked_as_often_as_it_is_played_back() {
 }
 
 #[test]
-fn limits_decide_how_it_ends_and_the_report_is_written_all_the_same() {
+fn limits_decide_the_exit_code_and_the_report_is_written() {
     let (temporary, set) = folder_with_set();
     let run = |folder: &str, limits: &str| {
         let folder = temporary.path().join(folder);
@@ -90,7 +90,7 @@ fn limits_decide_how_it_ends_and_the_report_is_written_all_the_same() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_said_and_nothing_is_left_behind() {
+fn what_cannot_be_compared_is_refused_and_nothing_is_left() {
     let (temporary, set) = folder_with_set();
     let folder = temporary.path().join("report");
     let fails = |source: &Path, options: &[&str], code: i32, words: &[&str]| {

@@ -10,7 +10,7 @@ use sunbake_tests::Traced;
 use sunbake_tests::ambient::{ambient_at, flat, rays};
 
 #[test]
-fn b10_what_is_buried_reads_nothing_and_does_not_bleed() {
+fn b10_buried_texels_are_dark_and_do_not_bleed() {
     // A block that stands in the ground, which is a solid slab.
     let slab = block(Vec3::new(-3.0, -1.0, -3.0), Vec3::new(3.0, 0.0, 3.0));
     let stone = block(Vec3::new(-1.0, -0.5, -1.0), Vec3::new(1.0, 0.5, 1.0));

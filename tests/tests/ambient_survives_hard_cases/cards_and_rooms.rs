@@ -38,7 +38,7 @@ fn b13_a_leaf_hides_by_its_cut_out() {
 }
 
 #[test]
-fn cards_with_two_sides_hold_what_each_of_them_sees() {
+fn two_sided_cards_store_both_sides() {
     // A card just above endless ground: all of the sky above, nothing but ground below.
     let two_sided = Material { is_double_sided: true, ..opaque() };
     let card = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 0.5);

@@ -7,7 +7,7 @@ use sunbake::settings::{AmbientRequest, BakeSettings};
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
 
 #[test]
-fn texels_may_be_spread_over_points_of_their_surface() {
+fn supersampling_averages_over_a_texel() {
     // Beneath a grate much finer than texels, single points see bars or gaps by chance.
     let bars: Vec<[Vec3; 3]> = (-20..20)
         .flat_map(|i| floor(Vec2::new(i as f32 * 0.1, -2.0), Vec2::new(i as f32 * 0.1 + 0.05, 2.0), 0.02))

@@ -19,7 +19,7 @@ fn b7_needles_and_broken_triangles_leave_their_neighbours_alone() {
 }
 
 #[test]
-fn b8_single_sides_hide_from_behind_and_an_open_box_is_no_solid() {
+fn b8_single_sided_faces_occlude_from_both_sides_and_an_open_box_is_no_solid() {
     // The same card, facing down and facing up, hides as much.
     let card = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0);
     let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]].map(|[x, z]| DVec3::new(x, 1.0, z));

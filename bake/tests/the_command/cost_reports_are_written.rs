@@ -29,7 +29,7 @@ fn validate(report: &Value) {
 }
 
 #[test]
-fn a_small_budget_gives_a_report_that_says_what_it_lacks() {
+fn with_a_small_budget_a_report_names_what_did_not_run() {
     let desk = Desk::new();
     let started = Instant::now();
     let run = cost(&desk, &["--json"]).ok();
@@ -77,7 +77,7 @@ fn the_page_needs_no_network_and_holds_every_row() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_said_in_one_line() {
+fn requests_that_cannot_be_measured_are_refused() {
     let desk = Desk::new();
     let hasty = desk.run(&["cost", "floor.glb", "-o", "out/report", "--budget=5"]);
     hasty.fails("budget", 1, &["10 to 86400", "sunbake cost --help"]);
@@ -93,7 +93,7 @@ fn what_cannot_be_measured_is_said_in_one_line() {
 
 #[cfg(unix)]
 #[test]
-fn a_report_that_is_interrupted_leaves_nothing() {
+fn an_interrupted_report_leaves_nothing() {
     let desk = Desk::new();
     let arguments = ["cost", "floor.glb", "-o", "out/report", "--threads=1"];
     let child = desk.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

@@ -4,7 +4,7 @@ use super::tools::{Desk, Run};
 use std::process::Stdio;
 
 #[test]
-fn alone_it_says_what_it_does_in_a_few_lines() {
+fn without_arguments_it_prints_a_few_lines() {
     let run = Desk::new().run(&[]).ok();
     assert!((5..=8).contains(&run.stdout.lines().count()) && run.stderr.is_empty(), "{}", run.stdout);
 }
@@ -23,7 +23,7 @@ fn help_comes_in_two_lengths() {
 }
 
 #[test]
-fn a_command_line_that_is_none_exits_with_1_and_the_usage() {
+fn an_invalid_command_line_exits_with_1_and_prints_the_usage() {
     let desk = Desk::new();
     for arguments in
         [&["frobnicate"][..], &["bake"], &["bake", "floor.glb"], &["bake", "floor.glb", "-o", "x", "--fast"]]
@@ -35,7 +35,7 @@ fn a_command_line_that_is_none_exits_with_1_and_the_usage() {
 }
 
 #[test]
-fn json_is_all_there_is_on_stdout() {
+fn with_json_nothing_else_is_on_stdout() {
     let desk = Desk::new();
     let baked = desk.bake(&["--json"]).ok();
     assert_eq!(baked.json()["format"], "sunbake");
@@ -49,7 +49,7 @@ fn json_is_all_there_is_on_stdout() {
 }
 
 #[test]
-fn explaining_bakes_nothing() {
+fn explain_bakes_nothing() {
     let desk = Desk::new();
     let run = desk.bake(&["--explain"]).ok();
     assert!(run.stdout.contains("not baked") && run.stdout.contains("sun-intervals"), "{}", run.stdout);
@@ -57,20 +57,20 @@ fn explaining_bakes_nothing() {
 }
 
 #[test]
-fn quiet_is_quiet_even_where_there_is_a_warning() {
+fn quiet_prints_no_warnings() {
     let run = Desk::new().bake(&["-q", "--place", "80,0", "--date", "2026-12-21"]).ok();
     assert_eq!((run.stdout.as_str(), run.stderr.as_str()), ("", ""));
 }
 
 #[test]
-fn only_intervals_is_what_it_does_anyway() {
+fn only_intervals_bakes_a_set() {
     let desk = Desk::new();
     desk.bake(&["--only", "intervals"]).ok();
     assert_eq!(desk.left(), ["set"]);
 }
 
 #[test]
-fn the_engine_asked_for_is_the_one_that_bakes() {
+fn the_requested_engine_bakes() {
     let desk = Desk::new();
     let asked = ["bake", "floor.glb", "-o", "out/bisected", "--preset=draft", "--size=64", "--json"];
     let run = desk.run(&[&asked[..], &["--engine=bisect:8", "--edge-seconds=2"]].concat()).ok();
@@ -88,7 +88,7 @@ fn the_same_seed_draws_the_same_texels() {
 }
 
 #[test]
-fn a_reader_that_leaves_early_is_no_failure() {
+fn a_closed_pipe_is_no_failure() {
     let desk = Desk::new();
     desk.bake(&[]).ok();
     for arguments in
@@ -124,7 +124,7 @@ fn a_set_is_replaced_only_by_force() {
 }
 
 #[test]
-fn a_set_may_fill_the_folder_one_stands_in() {
+fn a_set_may_be_written_into_the_current_folder() {
     let desk = Desk::new();
     std::fs::create_dir(desk.path("here")).unwrap();
     let mut command =

@@ -103,7 +103,7 @@ fn a_scene_opens_nothing_outside_its_own_folder() {
 }
 
 #[test]
-fn files_that_are_not_there_are_named() {
+fn missing_files_are_named() {
     let desk = Desk::new();
     desk.write("gone.gltf", &with_buffer("gone.bin"));
     desk.write("keys.json", b"[");
@@ -122,7 +122,7 @@ fn files_that_are_not_there_are_named() {
 }
 
 #[test]
-fn options_that_make_no_sense_are_refused() {
+fn invalid_options_are_refused() {
     let cases: [(&[&str], i32, &[&str]); 26] = [
         (&["--place", "91,0"], 1, &["latitude 91", "-90..=90"]),
         (&["--place", "0,181"], 1, &["longitude 181", "-180..=180"]),
@@ -161,7 +161,7 @@ fn options_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_refused_before_anything_is_spent() {
+fn a_folder_that_cannot_be_written_is_refused_before_the_scene_is_read() {
     let desk = Desk::new();
     desk.write("out/letter.txt", b"dear");
     let cases: [(&str, &[&str], &[&str]); 6] = [
@@ -196,7 +196,7 @@ fn a_disk_that_fills_up_leaves_nothing() {
 }
 
 #[test]
-fn what_is_only_partly_bad_bakes_with_a_word_about_it() {
+fn a_scene_with_some_bad_parts_bakes_with_a_warning() {
     let cases: [(&str, Vec<u8>, u64, &str); 3] = [
         ("one position is not a number", with_positions(f32::NAN, 2), 1, ""),
         ("a wall's image is none", with_image("OPAQUE", b"no image"), 0, "warning: "),
@@ -229,7 +229,7 @@ fn what_is_only_partly_bad_bakes_with_a_word_about_it() {
 }
 
 #[test]
-fn a_set_that_was_tampered_with_is_refused() {
+fn a_damaged_set_is_refused() {
     let desk = Desk::new();
     desk.bake(&[]).ok();
     let manifest = desk.path("out/set/sunbake.json");

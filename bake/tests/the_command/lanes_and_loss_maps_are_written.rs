@@ -30,7 +30,7 @@ fn three_lanes_write_three_times_the_textures() {
 }
 
 #[test]
-fn a_light_without_width_has_one_lane_whatever_is_asked() {
+fn a_light_without_width_has_one_lane() {
     let desk = Desk::new();
     let keys =
         r#"{"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}], "angular_radius_deg": 0}"#;
@@ -42,7 +42,7 @@ fn a_light_without_width_has_one_lane_whatever_is_asked() {
 }
 
 #[test]
-fn the_plan_says_why_there_are_lanes_or_are_not() {
+fn the_plan_says_why_lanes_are_on_or_off() {
     let desk = Desk::new();
     for (lanes, on) in [("--lanes=1", false), ("--lanes=5", true)] {
         let plan = desk.run(&["bake", "floor.glb", "--explain", "--json", lanes]).ok().json();
@@ -52,7 +52,7 @@ fn the_plan_says_why_there_are_lanes_or_are_not() {
 }
 
 #[test]
-fn lanes_count_against_the_memory_that_is_allowed() {
+fn lanes_count_against_the_memory_limit() {
     let desk = Desk::new();
     let arguments = ["bake", "floor.glb", "-o", "out/set", "--size=4096", "--max-memory=4G", "--lanes=5"];
     desk.run(&arguments).fails("five lanes", 3, &["in 5 lanes", "--lanes", "--max-memory"]);
@@ -90,7 +90,7 @@ fn fence() -> Vec<u8> {
 }
 
 #[test]
-fn a_second_layer_is_there_where_texels_need_it_and_says_how_many() {
+fn a_second_layer_is_written_where_texels_need_it() {
     let desk = Desk::new();
     desk.write("fence.glb", &fence());
     let usual =
@@ -147,7 +147,7 @@ fn a_loss_map_holds_the_minutes_that_the_manifest_counts() {
 }
 
 #[test]
-fn a_set_holds_a_loss_map_only_if_it_was_asked_for() {
+fn a_loss_map_is_written_only_on_request() {
     let desk = Desk::new();
     let plain = desk.bake(&["--json"]).ok().json();
     assert_eq!(plain["atlases"][0].get("loss_map"), None);

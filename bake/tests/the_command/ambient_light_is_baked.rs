@@ -23,7 +23,7 @@ fn effect(manifest: &Value, name: &str) -> Value {
 }
 
 #[test]
-fn ao_alone_is_a_finished_glb_and_one_picture() {
+fn ao_alone_writes_a_glb_and_one_picture() {
     let desk = Desk::new();
     let manifest = bake_ao(&desk, &["--json"]).ok().json();
     assert_eq!(names(&desk.path("out/set")), ["page0_ao.png", "scene.glb", "sunbake.json"]);
@@ -51,7 +51,7 @@ fn ao_alone_is_a_finished_glb_and_one_picture() {
 }
 
 #[test]
-fn intervals_alone_have_nothing_of_it() {
+fn intervals_alone_bake_no_ambient_light() {
     let desk = Desk::new();
     let manifest = desk.bake(&["--only", "intervals", "--json"]).ok().json();
     assert!(manifest.get("ambient").is_none() && manifest["atlases"][0]["ao"].is_null());
@@ -61,7 +61,7 @@ fn intervals_alone_have_nothing_of_it() {
 }
 
 #[test]
-fn bent_normals_the_sky_numbers_and_vertices_come_when_asked_for() {
+fn bent_normals_sky_and_vertices_are_written_on_request() {
     let desk = Desk::new();
     let flags = ["--bent", "--sky=sh2", "--exr", "--ao-vertices=COLOR_0", "--ao-bits=16", "--ao-supersample=2"];
     let manifest = bake_ao(&desk, &[&flags[..], &["--json"]].concat()).ok().json();

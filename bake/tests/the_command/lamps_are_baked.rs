@@ -22,7 +22,7 @@ fn effect<'a>(manifest: &'a Value, name: &str) -> &'a Value {
 }
 
 #[test]
-fn a_lamp_instead_of_the_sun_is_all_that_a_set_holds() {
+fn a_set_may_hold_a_lamp_and_no_sun() {
     let desk = desk();
     for engine in ["--engine=exact", "--engine=rays:64"] {
         let arguments = [&EXACT[..], &["--path=lamp.json", "--bits=16", "--json", "--force", engine]].concat();
@@ -50,7 +50,7 @@ fn a_lamp_instead_of_the_sun_is_all_that_a_set_holds() {
 }
 
 #[test]
-fn a_lamp_beside_the_sun_shares_its_time_and_changes_nothing_of_it() {
+fn a_lamp_beside_the_sun_leaves_the_suns_maps_unchanged() {
     let desk = desk();
     let alone = desk.run(&[&EXACT[..], &["--place=40,0", "--json"]].concat()).ok().json();
     let rise = std::fs::read(desk.path("out/set/page0_lane0_layer0_rise.png")).expect("a texture");
@@ -82,7 +82,7 @@ fn a_plan_says_what_a_lamp_adds() {
 }
 
 #[test]
-fn what_is_no_lamp_is_said_in_one_line() {
+fn invalid_lamps_are_refused() {
     let desk = desk();
     desk.write("one.json", br#"{"keys": [{"position": [0, 1, 0]}]}"#);
     desk.write("still.json", br#"{"keys": [{"position": [0, 1, 0]}, {"position": [0, 1, 0]}]}"#);
@@ -101,7 +101,7 @@ fn what_is_no_lamp_is_said_in_one_line() {
 }
 
 #[test]
-fn a_lamp_counts_against_the_memory_that_is_allowed() {
+fn a_lamp_counts_against_the_memory_limit() {
     let desk = desk();
     let arguments = ["bake", "floor.glb", "-o", "out/set", "--size=8192", "--max-memory=15G", "--lamp=lamp.json"];
     desk.run(&arguments).fails("a lamp", 3, &["with a lamp", "--size", "--max-memory"]);

@@ -13,7 +13,7 @@ use sunbake_runtime::{Moment, Shot};
 const SIZE: [u32; 2] = [128, 128];
 
 #[test]
-fn v14_volumes_without_end_reach_far_surfaces_and_leave_the_background() {
+fn v14_infinite_volumes_reach_far_surfaces_and_leave_the_background() {
     let gpu = gpu();
     // Ground as far as a hundred kilometres, under a pole whose shadow reaches it at a grazing sun.
     let far = || {
@@ -89,7 +89,7 @@ fn v15_each_saving_gives_the_same_mask() {
 }
 
 #[test]
-fn v16_finite_volumes_equal_endless_ones_within_the_lamps_range() {
+fn v16_finite_volumes_equal_infinite_ones_within_the_lamps_range() {
     let gpu = gpu();
     let scene = ground()
         .block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(-0.4, 1.0, -0.2))

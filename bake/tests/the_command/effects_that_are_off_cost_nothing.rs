@@ -68,7 +68,7 @@ fn a_floor_under_a_point_sun_bakes_one_pair_of_textures_and_traces_no_ray() {
 }
 
 #[test]
-fn each_effect_adds_its_own_and_nothing_else() {
+fn each_effect_adds_its_own_files_and_nothing_else() {
     let desk = desk();
     let least = Baked::of(&desk, &LEAST);
     let adds = |argument: &str, more: &[&str], effects: &[&str], files: &[&str]| {
@@ -101,7 +101,7 @@ fn each_effect_adds_its_own_and_nothing_else() {
 }
 
 #[test]
-fn every_effect_says_what_it_costs_and_what_turns_it_over() {
+fn every_effect_states_its_cost_and_what_toggles_it() {
     let desk = desk();
     for arguments in [&LEAST[..], &["--only=ao"], &["--place=40,0", "--lanes=5", "--lamp=lamp.json", "--bent"]] {
         let plan = desk.run(&[&["bake", "floor.glb", "--explain", "--json"][..], arguments].concat()).ok().json();
@@ -122,7 +122,7 @@ fn every_effect_says_what_it_costs_and_what_turns_it_over() {
 }
 
 #[test]
-fn a_set_that_says_less_of_its_effects_is_still_read() {
+fn a_set_without_costs_of_effects_is_still_read() {
     let desk = desk();
     let mut manifest = Baked::of(&desk, &LEAST).manifest;
     for effect in manifest["effects"].as_array_mut().expect("a list") {
