@@ -14,7 +14,7 @@ use std::time::Instant;
 use sunbake::maps::{Bits, GpuTexel, PageMaps};
 use sunbake::sun::clock_text;
 use sunbake_runtime::light::{LUMINANCE, codes_from_display, display_from_light};
-use sunbake_runtime::sheet::{Table, heat, heat_map};
+use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique};
 use sunbake_runtime::texture::srgb_from_linear;
 use sunbake_runtime::{AmbientModel, Camera, Filter, Moment, Raster, Shot, Stage, View};
@@ -68,7 +68,7 @@ fn ambient_bytes(page: &PageMaps, bits: Bits) -> u64 {
     GpuTexel { layers: 0, ..page.gpu_texel(bits) }.bytes()
 }
 
-fn table(columns: &[Column], clock: &str) -> Table {
+fn table(columns: &[Column], clock: &str) -> PictureTable {
     let sky = columns.iter().map(|column| displayed(&column.sky)).collect();
     let both = columns.iter().map(|column| displayed(&column.both)).collect();
     let apart = |column: &Column| {
@@ -76,7 +76,7 @@ fn table(columns: &[Column], clock: &str) -> Table {
         let pixels = pairs.map(|(a, b)| (*a - *b).dot(LUMINANCE).abs().min(1.0)).collect();
         heat_map(&Raster { size: column.sky.size, pixels }.reduced(SUPERSAMPLE))
     };
-    Table {
+    PictureTable {
         title: vec![
             format!("Light from all around, {clock}"),
             "below each column, what it reads and the time of a frame".into(),

@@ -16,7 +16,7 @@ use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::light::{codes_from_display, display_from_light};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
-use sunbake_runtime::sheet::{Table, heat, heat_map};
+use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{ShadowMaps, Technique, Truth};
 use sunbake_runtime::texture::srgb_from_linear;
 use sunbake_runtime::{Camera, Moment, Raster, Shot, Stage, View};
@@ -53,7 +53,7 @@ fn main() -> Result<(), Anything> {
     });
     let [hard, soft] = truths;
     let (hard, soft) = (hard?, soft?);
-    let mut table = Table {
+    let mut table = PictureTable {
         title: vec![
             format!("shadow maps of {size_texels} texels at {clock}"),
             "under each its mean error, hard variants against truth of the centre of the sun and soft ones against truth of its disc".into(),

@@ -16,7 +16,7 @@ use sunbake::sun::clock_text;
 use sunbake_runtime::compare::{Agreement, edges, mean, visibility_difference};
 use sunbake_runtime::light::{codes_from_display, display_from_light};
 use sunbake_runtime::shade::lit_picture;
-use sunbake_runtime::sheet::{Table, heat, heat_map};
+use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique, Truth};
 use sunbake_runtime::texture::srgb_from_linear;
 use sunbake_runtime::{Camera, Filter, Moment, Raster, Shot, Stage, View};
@@ -99,10 +99,10 @@ fn against(shot: &Shot, seen: &Raster<f32>, truth: &Raster<f32>) -> Agreement {
     Agreement::new(&visibility_difference(seen, truth), &beside, VISIBLE)
 }
 
-fn table(sets: &[Set; 2], columns: &[Column]) -> Table {
+fn table(sets: &[Set; 2], columns: &[Column]) -> PictureTable {
     let row = |k: usize| columns.iter().map(|column| column.pictures[k].clone()).collect();
     let [first, other] = [&sets[0].engine, &sets[1].engine];
-    Table {
+    PictureTable {
         title: vec![format!("{first} and {other}"), "below each column, mean errors against soft truth".into()],
         rows: vec![(first.clone(), row(0)), (other.clone(), row(1)), ("difference".into(), row(2))],
         heads: columns.iter().map(|column| column.clock.clone()).collect(),

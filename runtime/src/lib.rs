@@ -13,6 +13,7 @@
 pub mod camera;
 #[cfg(feature = "report")]
 pub mod compare;
+pub mod drawn_sides;
 pub mod gpu;
 pub mod image;
 pub mod light;
@@ -22,7 +23,6 @@ pub mod shade;
 pub mod shadow_maps;
 pub mod sheet;
 pub mod shot;
-pub mod sides;
 pub mod stage;
 pub mod technique;
 #[cfg(any(test, feature = "testing"))]

@@ -12,7 +12,7 @@ use sunbake::maps::{
 };
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
-/// What programs that read a page must know of it. `radius_rad` is the sun's angular radius.
+/// What the programs that read a page depend on. `radius_rad` is the sun's angular radius; 0 is a point sun.
 pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant {
     let lane = |lane: &sunbake::maps::LaneMaps| LaneVariant {
         layer_count: lane.layers.len() as u32,
@@ -70,7 +70,7 @@ impl<'a> Page<'a> {
         self.filtered(page_uv, filter, |texel| self.disc_visibility(texel, moment))
     }
 
-    /// A value of texels (`y * width + x`), at a point of the page.
+    /// A value of texels (indices are `y * width + x`), filtered at a point of the page.
     fn filtered(&self, page_uv: Vec2, filter: Filter, value: impl Fn(usize) -> f32) -> f32 {
         match filter {
             Filter::Nearest => value(self.nearest_texel(page_uv)),
@@ -91,7 +91,8 @@ impl<'a> Page<'a> {
         Footprint::new(point.as_dvec2(), size)
     }
 
-    /// The sun as the maps tell it, no more than the share of its disc that stands before the surface's plane.
+    /// Visibility of the sun by the maps, 0 to 1, and no more than the share of its disc above the surface's plane. `face` is the unit
+    /// normal on the side that the eye is on.
     pub fn sun_visibility(&self, page_uv: Vec2, face: Vec3, filter: Filter, moment: &Moment) -> f32 {
         if self.variant.layer_count() == 0 {
             return 0.0;
@@ -107,8 +108,8 @@ impl<'a> Page<'a> {
         disc_share.min(self.page_visibility(page_uv, filter, moment))
     }
 
-    /// The lamp as the maps tell it, no more than the share of its ball that stands before the surface's plane; `way_m`
-    /// leads to it. Twin of `lamp_baked.wgsl`.
+    /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its ball above the surface's plane; `way_m` leads
+    /// from the surface to the lamp. Twin of `lamp_baked.wgsl`.
     pub fn lamp_visibility(&self, page_uv: Vec2, face: Vec3, way_m: Vec3, filter: Filter, lamp: &LampMoment) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
         let ball_share = (0.5 + face.dot(way_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
@@ -119,51 +120,51 @@ impl<'a> Page<'a> {
         ball_share.min(self.filtered(page_uv, filter, seen))
     }
 
-    /// Light from all around on a surface with this normal, turned to the eye; `is_back`: the eye is behind the surface.
+    /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the surface.
     /// Twin of `ambient_hemisphere.wgsl`, `ambient_occlusion.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
-    pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, around: &Around) -> Vec3 {
-        let light = around.daylight;
+    pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, sky: &AmbientSky) -> Vec3 {
+        let light = sky.daylight;
         let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);
-        let of_normal = 0.5 + 0.5 * normal.y;
-        let Some(ambient) = &self.maps.ambient else { return hemisphere(of_normal) };
-        let side = side_of_page(ambient, is_back);
+        let share_of_normal = 0.5 + 0.5 * normal.y;
+        let Some(ambient) = &self.maps.ambient else { return hemisphere(share_of_normal) };
+        let side = ambient_side(ambient, is_back);
         let footprint = self.footprint(page_uv);
-        let open = || footprint.blend(|texel| decode_open(side.open[texel]));
+        let occlusion = || footprint.blend(|texel| decode_open(side.open[texel]));
         match (&side.sky, &side.bent) {
-            (Some(sky), _) => {
+            (Some(codes), _) => {
                 let light_at = |texel: usize| {
-                    let codes = sky[texel].iter().zip(&around.sky);
-                    codes.map(|(&code, &of_sky)| of_sky * decode_signed(code)).sum::<Vec3>()
+                    let pairs = codes[texel].iter().zip(&sky.harmonics);
+                    pairs.map(|(&code, &light)| light * decode_signed(code)).sum::<Vec3>()
                 };
                 footprint.blend(light_at).max(Vec3::ZERO)
             }
             (None, Some(bent)) => {
                 let height = footprint.blend(|texel| decode_signed(bent[texel][1]));
-                hemisphere((0.5 + 0.75 * height).clamp(0.0, 1.0)) * open()
+                hemisphere((0.5 + 0.75 * height).clamp(0.0, 1.0)) * occlusion()
             }
-            (None, None) => hemisphere(of_normal) * open(),
+            (None, None) => hemisphere(share_of_normal) * occlusion(),
         }
     }
 }
 
-/// What comes from all around at a moment.
+/// Ambient light at a moment, before any surface.
 #[derive(Debug, Clone, Copy)]
-pub struct Around<'a> {
+pub struct AmbientSky<'a> {
     daylight: &'a Daylight,
-    /// The sky in harmonics; zero where no page wants it.
-    sky: [Vec3; harmonics::COUNT],
+    /// The sky's radiance in spherical harmonics; zero where no page needs it.
+    harmonics: [Vec3; harmonics::COUNT],
 }
 
-impl<'a> Around<'a> {
-    /// As far as these pages want it.
+impl<'a> AmbientSky<'a> {
+    /// Computes what these pages need.
     pub fn new(moment: &'a Moment, pages: &[Page]) -> Self {
-        let is_wanted = pages.iter().any(|page| page.variant.ambient == AmbientModel::Sky);
-        let sky = if is_wanted { moment.sky_harmonics() } else { Default::default() };
-        Self { daylight: &moment.daylight, sky }
+        let is_needed = pages.iter().any(|page| page.variant.ambient == AmbientModel::Sky);
+        let harmonics = if is_needed { moment.sky_harmonics() } else { Default::default() };
+        Self { daylight: &moment.daylight, harmonics }
     }
 }
 
 /// The maps of the side that the eye is on.
-fn side_of_page(ambient: &AmbientMaps, is_back: bool) -> &AmbientSide {
+fn ambient_side(ambient: &AmbientMaps, is_back: bool) -> &AmbientSide {
     ambient.back.as_ref().filter(|_| is_back).unwrap_or(&ambient.front)
 }

@@ -2,7 +2,7 @@
 
 use crate::image::Raster;
 use crate::light::Moment;
-use crate::playback::{Around, Page};
+use crate::playback::{AmbientSky, Page};
 use crate::shot::Shot;
 use crate::stage::{CornerAttributes, Stage};
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -11,29 +11,29 @@ use sunbake::scene::Material;
 use sunbake::scene::alpha::blend;
 use sunbake::trace::Hit;
 
-/// Linear light of every pixel, given how much of the sun each sees, and of the lamp, if there is one.
+/// Linear light of every pixel, given the visibility of the sun, 0 to 1, and of the lamp, if there is one.
 pub fn lit_picture(
     shot: &Shot,
     moment: &Moment,
     visibility: &Raster<f32>,
     lamp_visibility: Option<&Raster<f32>>,
 ) -> Raster<Vec3> {
-    let seen = |pixel: usize| Seen {
+    let seen = |pixel: usize| PixelVisibility {
         sun: visibility.pixels[pixel],
         lamp: lamp_visibility.map_or(0.0, |visibility| visibility.pixels[pixel]),
     };
     let pages: Vec<Page> = shot.stage.pages.iter().map(|maps| Page::new(maps, shot.stage.bits, 0.0)).collect();
-    let around = Around::new(moment, &pages);
+    let sky = AmbientSky::new(moment, &pages);
     let light = |(pixel, hit): (usize, &Option<Hit>)| match hit {
         None => moment.sky_color(shot.ray(pixel).normalize()),
-        Some(hit) => lit_surface(shot, moment, (&pages, &around), pixel, hit, &seen(pixel)),
+        Some(hit) => lit_surface(shot, moment, (&pages, &sky), pixel, hit, &seen(pixel)),
     };
     let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(light).collect();
     Raster { size: shot.view.size, pixels }
 }
 
-/// How much a pixel's surface sees of each light.
-struct Seen {
+/// Visibility of each light at a pixel, 0 to 1.
+struct PixelVisibility {
     sun: f32,
     lamp: f32,
 }
@@ -41,10 +41,10 @@ struct Seen {
 fn lit_surface(
     shot: &Shot,
     moment: &Moment,
-    (pages, around): (&[Page], &Around),
+    (pages, sky): (&[Page], &AmbientSky),
     pixel: usize,
     hit: &Hit,
-    seen: &Seen,
+    visible: &PixelVisibility,
 ) -> Vec3 {
     let stage = shot.stage;
     let triangle = hit.triangle as usize;
@@ -59,14 +59,14 @@ fn lit_surface(
     let ambient = match stage.chart(stage.geometry.instance[triangle] as usize) {
         Some(chart) => {
             let page_uv = blend(corners.page_uv, weights);
-            pages[chart.page as usize].ambient_light(page_uv, normal, front.dot(ray) > 0.0, around)
+            pages[chart.page as usize].ambient_light(page_uv, normal, front.dot(ray) > 0.0, sky)
         }
         None => moment.daylight.ground_light.lerp(moment.daylight.sky_light, 0.5 + 0.5 * normal.y),
     };
-    let light = shade(material, base_color.xyz(), normal, moment, seen.sun, ambient);
+    let light = shade(material, base_color.xyz(), normal, moment, visible.sun, ambient);
     let of_lamp = moment.lamp.filter(|_| !material.is_unlit).map(|lamp| {
         let way_m = lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3();
-        lamp.on(base_color.xyz(), normal, way_m, seen.lamp)
+        lamp.on(base_color.xyz(), normal, way_m, visible.lamp)
     });
     light + of_lamp.unwrap_or(Vec3::ZERO)
 }
@@ -88,7 +88,7 @@ fn texture_color(shot: &Shot, corners: &CornerAttributes, hit: &Hit, front: Vec3
     mips.sample(image_uv, texels.max(1.0).log2(), texture.wrap)
 }
 
-/// Light on a matt surface: the sun so far as it is seen, and whatever comes from all around.
+/// Light that a matt surface reflects or emits: from the sun, as far as it is visible, and ambient light.
 fn shade(material: &Material, base_color: Vec3, normal: Vec3, moment: &Moment, visibility: f32, ambient: Vec3) -> Vec3 {
     if material.is_unlit {
         return base_color + material.emissive;

@@ -6,17 +6,17 @@ use rayon::prelude::*;
 use std::sync::OnceLock;
 use sunbake::trace::Hit;
 
-/// A view of a stage. What its pixels show is found once, when first asked for, and serves every moment of the day.
+/// A stage seen through a view. The surface at each pixel is found on first use, and serves every time of day.
 pub struct Shot<'a> {
-    /// What is seen.
+    /// The stage.
     pub stage: &'a Stage,
-    /// Through what.
+    /// Camera and picture size.
     pub view: View,
     hits: OnceLock<Vec<Option<Hit>>>,
 }
 
 impl<'a> Shot<'a> {
-    /// A view of a stage.
+    /// Nothing is traced yet.
     pub fn new(stage: &'a Stage, view: View) -> Self {
         Self { stage, view, hits: OnceLock::new() }
     }
@@ -24,7 +24,7 @@ impl<'a> Shot<'a> {
     /// The surface at each pixel's centre, in row order.
     pub fn hits(&self) -> &[Option<Hit>] {
         self.hits.get_or_init(|| {
-            // Built by one thread, before many ask for it.
+            // The tracer is built before the parallel loop uses it.
             self.stage.tracer();
             let eye_m = self.view.eye_m.as_dvec3();
             let width = self.view.size[0] as usize;
@@ -39,7 +39,7 @@ impl<'a> Shot<'a> {
         })
     }
 
-    /// The ray of a pixel, by its place in row order.
+    /// The ray through the centre of a pixel, given by its index in row order.
     pub fn ray(&self, pixel: usize) -> glam::Vec3 {
         let width = self.view.size[0] as usize;
         self.view.ray((pixel % width) as u32, (pixel / width) as u32)

@@ -1,19 +1,19 @@
-//! Base colour textures with levels of detail, and their sampling on the CPU: the twin of what a GPU's sampler does with
-//! an sRGB texture and `textureSampleLevel`.
+//! Base colour textures with mip levels, and their sampling on the CPU: the twin of a GPU's sampler with an sRGB texture and
+//! `textureSampleLevel`.
 
 use glam::{Vec2, Vec4};
 use std::sync::LazyLock;
 use sunbake::scene::alpha::wrap_texel;
 use sunbake::scene::{Image, Wrap};
 
-/// An image and its halvings, down to one texel.
+/// An image and its mip levels, down to one texel.
 #[derive(Debug, Clone)]
 pub struct MipChain {
-    /// The first is the image itself.
+    /// From the image itself to a single texel.
     pub levels: Vec<Level>,
 }
 
-/// One level of detail.
+/// One mip level.
 #[derive(Debug, Clone)]
 pub struct Level {
     /// In texels.
@@ -54,7 +54,7 @@ fn encoded(color: Vec4) -> [u8; 4] {
 }
 
 impl MipChain {
-    /// Halves the image until one texel is left.
+    /// Halves an image until one texel is left.
     pub fn new(image: &Image) -> Self {
         let mut levels = vec![Level { width: image.width, height: image.height, rgba: image.rgba.clone() }];
         while let Some(next) = levels.last().and_then(Level::halved) {
@@ -63,7 +63,7 @@ impl MipChain {
         Self { levels }
     }
 
-    /// Filtered within and between levels.
+    /// Samples with trilinear filtering. `lod` 0 is the image itself.
     pub fn sample(&self, uv: Vec2, lod: f32, wrap: [Wrap; 2]) -> Vec4 {
         let lod = lod.clamp(0.0, (self.levels.len() - 1) as f32);
         let fine = lod.floor() as usize;
@@ -74,8 +74,8 @@ impl MipChain {
 }
 
 impl Level {
-    /// Half as wide and high, rounded down; none if there is one texel only. Colours are weighed by their alpha, so that
-    /// what is cut away does not tint what is left.
+    /// Half as wide and high, rounded down. None for a single texel. Colours are weighted by alpha, so that transparent texels do not
+    /// tint opaque ones.
     fn halved(&self) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;

@@ -1,32 +1,31 @@
-//! A camera that shows a scene well: the file's first or, if it has none, one that looks from above and aside.
+//! A camera that shows a scene well: the file's first one or, if it has none, one that looks from above and aside.
 //!
-//! What is worth showing is where the detail is. Points are drawn from the surfaces, triangles weighed by the square root
-//! of their area but no triangle by much more than most, so that one huge ground plane does not outweigh the town on it; the
-//! outermost few in a hundred are left out. Around their middle, candidates stand at several bearings and heights, each as far away as it takes to have the
-//! points in the picture. The one that sees the most of them wins, with a preference for a view from the south-east and a
-//! quarter of the way up, where the sun comes from behind the camera's shoulder for most of the day. A camera inside a
-//! house, or behind a hill, sees next to nothing and loses.
+//! Points are sampled on the surfaces. Triangles are weighted by the square root of their area, up to a limit, so that one huge ground
+//! plane does not outweigh the town on it; the outermost few in a hundred are left out. Candidates look at the middle of the points
+//! from several bearings and elevations, each from as far away as it takes to have the points in the picture. The candidate that sees
+//! most points wins, with a preference for the south-east and an elevation of 25 degrees, so that the sun is behind the camera for most
+//! of the day. A camera inside a house or behind a hill sees next to nothing and loses.
 
 use super::Camera;
 use crate::stage::Stage;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Vertical field of view.
+/// Vertical field of view, in degrees.
 pub(crate) const FOV_Y_DEG: f64 = 38.0;
-/// Points that stand for the scene.
+/// How many points are sampled.
 const POINTS: usize = 1500;
-/// Largest weight of a triangle, in weights of a middling one.
+/// Largest weight of a triangle, as a multiple of the median weight.
 const MOST_WEIGHT: f64 = 4.0;
 /// Share of points left out at either end of each axis.
 const OUTLIERS: f64 = 0.05;
 /// Share of points that must be in the picture.
 const INSIDE: f64 = 0.95;
-/// How much further away than those need.
+/// How much farther away a camera stands than those points need.
 const MARGIN: f64 = 1.15;
-/// Heights tried, in degrees above the horizon, with how much each is liked.
+/// Elevations of candidates in degrees, each with its weight.
 const ELEVATIONS_DEG: [(f64, f64); 4] = [(15.0, 0.86), (25.0, 1.0), (38.0, 0.93), (60.0, 0.7)];
-/// Bearings tried.
+/// How many bearings are tried.
 const BEARINGS: u32 = 24;
 
 impl Camera {
@@ -45,18 +44,18 @@ fn framed(stage: &Stage, aspect: f64) -> Camera {
     let candidates: Vec<(f64, f64)> = (0..BEARINGS)
         .flat_map(|i| ELEVATIONS_DEG.map(|(elevation, _)| (f64::from(i) * 360.0 / f64::from(BEARINGS), elevation)))
         .collect();
-    // Built by one thread, before many ask for it.
+    // The tracer is built before the parallel loop uses it.
     stage.tracer();
     let scored = candidates.par_iter().filter_map(|&(bearing_deg, elevation_deg)| {
         let camera = standing_back(&points, middle, towards(bearing_deg, elevation_deg), aspect)?;
-        Some((liking(bearing_deg, elevation_deg) * seen(stage, &camera, &points) as f64, camera))
+        Some((preference(bearing_deg, elevation_deg) * seen(stage, &camera, &points) as f64, camera))
     });
     let best = scored.collect::<Vec<_>>().into_iter().reduce(|a, b| if b.0 > a.0 { b } else { a });
-    best.map_or_else(|| somewhere(stage), |(_, camera)| camera)
+    best.map_or_else(|| camera_of_empty(stage), |(_, camera)| camera)
 }
 
-/// A view of a scene in which nothing is drawn.
-fn somewhere(stage: &Stage) -> Camera {
+/// A camera for a scene in which nothing is drawn.
+fn camera_of_empty(stage: &Stage) -> Camera {
     let reach = stage.scene.half_extent_m.max_element().max(1.0);
     Camera {
         eye_m: DVec3::new(0.0, 0.5, 2.0) * reach,
@@ -67,20 +66,20 @@ fn somewhere(stage: &Stage) -> Camera {
     }
 }
 
-/// Unit vector from the scene to a camera; bearings run from north over east.
+/// Unit vector from the scene to a camera. Bearings run from north over east.
 pub(crate) fn towards(bearing_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_b, cos_b) = bearing_deg.to_radians().sin_cos();
     let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
     DVec3::new(sin_b * cos_e, sin_e, -cos_b * cos_e)
 }
 
-fn liking(bearing_deg: f64, elevation_deg: f64) -> f64 {
+fn preference(bearing_deg: f64, elevation_deg: f64) -> f64 {
     let off_south_east = (bearing_deg - 150.0 + 180.0).rem_euclid(360.0) - 180.0;
-    let height = ELEVATIONS_DEG.iter().find(|(deg, _)| *deg == elevation_deg).map_or(1.0, |(_, liked)| *liked);
+    let height = ELEVATIONS_DEG.iter().find(|(deg, _)| *deg == elevation_deg).map_or(1.0, |(_, weight)| *weight);
     height * (1.0 - 0.25 * (off_south_east.abs() / 180.0))
 }
 
-/// Points of the surfaces that are drawn, more of them where there is more detail.
+/// Points on drawn surfaces, more of them where triangles are small.
 pub(crate) fn detail(stage: &Stage) -> Vec<DVec3> {
     let geometry = &stage.geometry;
     let edge_m = |triangle: usize| {
@@ -108,13 +107,13 @@ pub(crate) fn detail(stage: &Stage) -> Vec<DVec3> {
     (0..POINTS).map(point).collect()
 }
 
-/// The middle of the points' bounds, outliers left out.
+/// The middle of the points' bounds without outliers.
 pub(crate) fn middle(points: &[DVec3]) -> DVec3 {
     let along = |axis: DVec3| middle_along(points, axis);
     DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z))
 }
 
-/// The middle of where the points lie along an axis, outliers left out.
+/// The middle of the points along an axis, without outliers.
 fn middle_along(points: &[DVec3], axis: DVec3) -> f64 {
     let mut all: Vec<f64> = points.iter().map(|p| p.dot(axis)).collect();
     all.sort_by(f64::total_cmp);
@@ -125,10 +124,10 @@ fn middle_along(points: &[DVec3], axis: DVec3) -> f64 {
     }
 }
 
-/// The camera in a direction from the middle, as near as has most points in the picture.
+/// The camera in a direction from the middle, as near as it can be with most points in the picture.
 pub(crate) fn standing_back(points: &[DVec3], middle: DVec3, towards: DVec3, aspect: f64) -> Option<Camera> {
     let camera = Camera::look_at(middle + towards, middle, FOV_Y_DEG.to_radians())?;
-    // The middle of the box is not the middle of the picture: seen aslant, what is high lies further up.
+    // The middle of the box is not the middle of the picture, since perspective moves high points up.
     let shift = |axis: DVec3| axis * (middle_along(points, axis) - middle.dot(axis));
     let middle = middle + shift(camera.right) + shift(camera.up);
     let half_up = (0.5 * camera.fov_y_rad).tan();

@@ -1,5 +1,5 @@
-//! Where the picture is taken from. Cameras live in bake space and in `f64`; what both the GPU and a ray tracer use of
-//! them (the eye, the rays) is rounded to `f32` once, here, so that both look along the same rays.
+//! Cameras and views. Cameras are in bake space and in `f64`. What both the GPU and the ray tracer use of them (the eye, the rays) is
+//! rounded to `f32` once, here, so that both use the same rays.
 
 mod choice;
 pub(crate) mod framing;
@@ -12,7 +12,7 @@ use sunbake::scene::Scene;
 /// A perspective camera, bake space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Where it stands.
+    /// Position, in metres.
     pub eye_m: DVec3,
     /// Unit vector along which it looks.
     pub forward: DVec3,
@@ -20,12 +20,12 @@ pub struct Camera {
     pub right: DVec3,
     /// Unit vector to the picture's top.
     pub up: DVec3,
-    /// Vertical field of view.
+    /// Vertical field of view, in radians.
     pub fov_y_rad: f64,
 }
 
 impl Camera {
-    /// A camera that looks from one point to another, upright. None if the points coincide.
+    /// An upright camera that looks from one point to another. None if the points coincide.
     pub fn look_at(eye_m: DVec3, target_m: DVec3, fov_y_rad: f64) -> Option<Self> {
         let forward = (target_m - eye_m).try_normalize()?;
         // Looking straight up or down, north is at the picture's top.
@@ -48,34 +48,34 @@ impl Camera {
     }
 }
 
-/// A camera with a picture's size.
+/// A camera with the size of its picture.
 ///
-/// The ray through pixel coordinates (x, y) (pixel centres at halves) is `first + per_column x + per_row y`, one deep
-/// along `forward`.
+/// The ray through pixel coordinates (x, y), with pixel centres at halves, is `ray_first + ray_per_column x + ray_per_row y`. Its length
+/// along `forward` is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The eye in bake space.
+    /// The eye in bake space, in metres.
     pub eye_m: Vec3,
     /// Unit vector along which the camera looks.
     pub forward: Vec3,
     /// Ray through the picture's upper left corner.
     pub ray_first: Vec3,
-    /// What a step of one pixel to the right adds.
+    /// What one pixel to the right adds to a ray.
     pub ray_per_column: Vec3,
-    /// What a step of one pixel down adds.
+    /// What one pixel down adds to a ray.
     pub ray_per_row: Vec3,
-    /// Angle between neighbouring pixels at the picture's centre.
+    /// Angle between neighbouring pixels at the picture's centre, in radians.
     pub pixel_angle_rad: f32,
-    /// Rows of the matrix to clip space, less the depth row.
+    /// The x and y rows of the matrix to clip space.
     clip_rows: [Vec3; 2],
-    /// Depth at which surfaces start to be drawn.
+    /// Depth of the near plane.
     near_m: f32,
 }
 
 impl View {
-    /// A picture of `size` pixels. `scene` tells what is near: a millionth of its size.
+    /// A picture of `size` pixels. The near plane lies at a millionth of the scene's size.
     pub fn new(camera: &Camera, size: [u32; 2], scene: &Scene) -> Self {
         let half_up = (0.5 * camera.fov_y_rad).tan();
         let half = DVec2::new(half_up * f64::from(size[0]) / f64::from(size[1]), half_up);
@@ -95,25 +95,25 @@ impl View {
         }
     }
 
-    /// Reversed and infinite: depth is near over distance, 1 at the near plane and 0 at infinity, so that `f32` depths
-    /// are as precise far away as they are close by.
+    /// The projection, with reversed and infinite depth: depth is near over distance, 1 at the near plane and 0 at infinity, so that
+    /// `f32` depths are as precise far away as close by.
     pub fn clip_from_eye(&self) -> Mat4 {
         let [x, y] = self.clip_rows;
         Mat4::from_cols(x.extend(0.0), y.extend(0.0), Vec4::new(0.0, 0.0, 0.0, self.near_m), self.forward.extend(0.0))
             .transpose()
     }
 
-    /// The ray through a pixel's centre, one deep.
+    /// The ray through a pixel's centre, with length 1 along `forward`.
     pub fn ray(&self, column: u32, row: u32) -> Vec3 {
         self.ray_first + self.ray_per_column * (column as f32 + 0.5) + self.ray_per_row * (row as f32 + 0.5)
     }
 
-    /// Depth at which surfaces start to be drawn.
+    /// Depth of the near plane, in metres.
     pub fn near_m(&self) -> f32 {
         self.near_m
     }
 
-    /// Where a ray, one deep, meets the picture, in pixels from its upper left corner.
+    /// Where a ray, with length 1 along `forward`, meets the picture: pixels from its upper left corner.
     pub fn pixel_of(&self, ray: DVec3) -> [f64; 2] {
         let along = |k: usize| (ray.dot(self.clip_rows[k].as_dvec3()) * 0.5 + 0.5) * f64::from(self.size[k]);
         [along(0), f64::from(self.size[1]) - along(1)]

@@ -16,7 +16,7 @@ use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::light::clock_label;
 use sunbake_runtime::shade::lit_picture;
-use sunbake_runtime::sheet::{Table, heat, heat_map};
+use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{Technique, Truth};
 use sunbake_runtime::{Moment, Raster, Shot, Stage};
 
@@ -150,10 +150,10 @@ fn draw_column(technique: &mut dyn Technique, shot: &Shot, t: f64) -> Result<Col
     Ok(Column { clock: clock_label(shot.stage.path.as_ref(), t), pictures, cost })
 }
 
-fn sheet(columns: &[Column], baked: &BakeReport) -> Table {
+fn sheet(columns: &[Column], baked: &BakeReport) -> PictureTable {
     let row = |k: usize| columns.iter().map(|column| column.pictures[k].clone()).collect();
     let stats = &baked.manifest.stats;
-    Table {
+    PictureTable {
         title: vec![
             format!(
                 "{}, {} from sunrise to sunset",

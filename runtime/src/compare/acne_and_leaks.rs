@@ -1,15 +1,15 @@
-//! What a shadow map gets wrong, and how much of that its resolution explains.
+//! Defects of shadow maps: errors that their resolution does not explain.
 //!
-//! A map stores one depth a texel: at every shadow's edge it may be wrong by a texel and by its filter's width, and no bias helps.
-//! What is wrong elsewhere is a defect:
+//! A map stores one depth per texel. At every shadow's edge it may be wrong by a texel and by its filter's width, whatever the bias. An
+//! error elsewhere is a defect:
 //!
-//! * **Acne**: a surface that the whole of the light reaches, with no shadow near it, came out darker.
-//! * **Leak**: a surface in full shadow, with no light near it, came out lighter.
+//! * **Acne**: a fully lit surface with no shadow near it is drawn darker.
+//! * **Leak**: a surface in full shadow with no light near it is drawn lighter.
 //!
-//! *Near* is told as the light sees it, on the plane of the surface: a shadow is near if anything solid that rises over that plane
-//! lies within reach of the light's way, be it as thin as a wire; light is near if one of many rays, spread over all that is within
-//! reach, meets nothing. Soft light's way widens with the disc. Pixels that show another surface than a ray meets, or where one
-//! ends, are not counted.
+//! *Near* is measured across the light, on the plane of the surface. A shadow is near if any solid triangle above that plane, however
+//! thin, comes within reach of the ray to the light. Light is near if one of many rays, spread over everything within reach, hits
+//! nothing. With soft light the reach grows along the ray by the disc's angle. Pixels that show another surface than a ray hits, or the
+//! end of a surface, are not counted.
 
 use super::agreement::{EDGE_STEP, mean, neighbours, visibility_difference};
 use super::score::WRONG;
@@ -23,33 +23,33 @@ use rayon::prelude::*;
 use serde::Serialize;
 use sunbake::trace::{Direction, Hit};
 
-/// Difference beyond which what is far from any edge counts as a defect.
-const OFF: f32 = 1.0 / 16.0;
-/// Rays that look for light.
+/// Smallest error of a defect.
+const DEFECT: f32 = 1.0 / 16.0;
+/// Rays that search for light near a point.
 const RAYS: u32 = 1024;
-/// How far around a pixel's centre its surface must go on, in pixels.
+/// How far around a pixel's centre its surface must continue, in pixels.
 const WITHIN_PX: f32 = 1.0 / 8.0;
-/// Cosine between normals of what counts as one surface.
+/// Least cosine between the normals of two triangles that count as one surface.
 const SAME_PLANE: f64 = 0.9999;
 
-/// What a picture of visibility is like beside truth.
+/// Errors and defects of a picture of visibility, against truth.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Defects {
     /// Pixels compared.
     pub pixels: usize,
-    /// Pixels that differ by more than a half, one pixel or more from every edge of truth's picture.
+    /// Pixels with an error above a half, at least one pixel away from every edge of truth's picture.
     pub wrong: usize,
-    /// Sum of all differences.
+    /// Sum of all errors.
     pub error: f64,
-    /// Lit pixels far from any shadow that came out darker: in row order, picture after picture.
+    /// Pixels with acne: indices in row order, picture after picture.
     pub acne: Vec<usize>,
-    /// Dark pixels far from any light that came out lighter.
+    /// Pixels with leaks, in the same way.
     pub leaks: Vec<usize>,
 }
 
 impl Defects {
-    /// Compares a picture with truth. `depths_m` tells which surfaces it is of, `reach_m` how far across the light edges are
-    /// excused at a point, and `is_soft` whether truth is of the sun's disc or of its centre.
+    /// Compares a picture with truth. `depths_m` are the depths of the surfaces that the picture shows. `reach_m` is how far across the
+    /// light an edge may be from a point to explain an error there. `is_soft` says that truth is of the sun's disc, not of its centre.
     pub fn new(
         shot: &Shot,
         moment: &Moment,
@@ -64,8 +64,8 @@ impl Defects {
         let mut found = Self { pixels, error: mean(&difference) * pixels as f64, ..Self::default() };
         let mut suspects = Vec::new();
         for (i, &off) in difference.pixels.iter().enumerate() {
-            // What is not a number is wrong.
-            if off <= OFF {
+            // NaN is wrong.
+            if off <= DEFECT {
                 continue;
             }
             let around = || neighbours(i, width, height).map(|n| truth.pixels[n]);
@@ -76,11 +76,11 @@ impl Defects {
             }
         }
         let is_defect = |(i, hit, is_lit): &(usize, Hit, bool)| {
-            let place = ReceiverPoint::new(shot, moment, is_soft, *i, hit);
+            let point = ReceiverPoint::new(shot, moment, is_soft, *i, hit);
             let pixel_m = hit.distance_m * f64::from(shot.view.pixel_angle_rad);
-            // No picture tells edges more finely than its pixels.
-            let reach_m = reach_m(place.point_m).max(pixel_m);
-            is_surface_of(shot, *i, hit, f64::from(depths_m[*i])) && place.is_uniform(*is_lit, reach_m)
+            // An edge within a pixel cannot be resolved.
+            let reach_m = reach_m(point.point_m).max(pixel_m);
+            shows_surface_of(shot, *i, hit, f64::from(depths_m[*i])) && point.is_uniform(*is_lit, reach_m)
         };
         let defects: Vec<_> = suspects.into_par_iter().filter(is_defect).collect();
         for (i, _, is_lit) in defects {
@@ -89,7 +89,7 @@ impl Defects {
         found
     }
 
-    /// Mean difference.
+    /// Mean error.
     pub fn mean_error(&self) -> f64 {
         self.error / self.pixels.max(1) as f64
     }
@@ -109,8 +109,8 @@ impl Defects {
     }
 }
 
-/// Whether a picture shows the surface that a ray meets, and that surface goes on around the pixel's centre.
-fn is_surface_of(shot: &Shot, pixel: usize, hit: &Hit, depth_m: f64) -> bool {
+/// Whether a pixel shows the surface that its ray hits, and that surface continues around the pixel's centre.
+fn shows_surface_of(shot: &Shot, pixel: usize, hit: &Hit, depth_m: f64) -> bool {
     let (stage, ray) = (shot.stage, shot.ray(pixel));
     let normal = stage.geometry.normal(hit.triangle as usize);
     let length = ray.as_dvec3().length();
@@ -129,17 +129,18 @@ fn is_surface_of(shot: &Shot, pixel: usize, hit: &Hit, depth_m: f64) -> bool {
         && (depth_m - hit.distance_m / length).abs() < 0.5 * pixel_m / slant
 }
 
-/// What a pixel shows, and the light that is to reach it.
+/// A point that a pixel shows, and the light towards it.
 struct ReceiverPoint<'a> {
     shot: &'a Shot<'a>,
     triangle: u32,
     point_m: DVec3,
-    /// The normal on the side that the eye is on.
+    /// Unit normal on the side that the eye is on.
     face: DVec3,
+    /// Unit vector to the sun.
     sun: DVec3,
     /// Unit vectors across the light.
     aside: [DVec3; 2],
-    /// How much the disc's rays spread over a metre.
+    /// How far the disc's rays spread per metre of distance; 0 for hard light.
     spread: f64,
 }
 
@@ -159,20 +160,20 @@ impl<'a> ReceiverPoint<'a> {
         }
     }
 
-    /// Whether no edge of what truth says is within reach.
+    /// Whether truth has no edge within reach.
     fn is_uniform(&self, is_lit: bool, reach_m: f64) -> bool {
         let facing = self.face.dot(self.sun);
         if facing <= 0.0 {
-            // Turned away: dark whatever is near, unless the disc's rim may just reach it.
+            // Turned away from the light: dark whatever is near, unless the disc's rim may just reach it.
             return !is_lit && facing < -self.spread;
         }
         if is_lit { !self.has_caster_within(reach_m) } else { !self.has_light_within(reach_m) }
     }
 
-    /// Whether anything solid that rises over the surface's plane is within reach of the light's way.
+    /// Whether any solid triangle above the surface's plane is within reach of the ray to the light.
     fn has_caster_within(&self, reach_m: f64) -> bool {
         let Stage { geometry, scene, .. } = self.shot.stage;
-        // Rounding must not lift a surface over itself.
+        // Rounding must not lift a surface above itself.
         let level_m = 1e-3 * reach_m + 1e-6 * self.point_m.length();
         geometry.triangles.iter().enumerate().any(|(i, corners_m)| {
             let from_point = corners_m.map(|corner| corner.as_dvec3() - self.point_m);
@@ -194,7 +195,7 @@ impl<'a> ReceiverPoint<'a> {
         })
     }
 
-    /// Whether the light reaches the surface's plane anywhere within reach.
+    /// Whether light reaches the surface's plane anywhere within reach.
     fn has_light_within(&self, reach_m: f64) -> bool {
         let tracer = self.shot.stage.tracer();
         let origin_m = tracer.lift(self.point_m, self.face, self.triangle);
@@ -207,9 +208,9 @@ impl<'a> ReceiverPoint<'a> {
             let (sin, cos) = (f64::from(i) * GOLDEN_ANGLE_RAD).sin_cos();
             let aside = self.aside[0] * cos + self.aside[1] * sin;
             let shift_m = aside * (reach_m * ((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt());
-            // From the plane of the surface: up the light or down it.
+            // On the plane of the surface, which lies up or down along the light.
             let start_m = origin_m + shift_m - self.sun * (self.face.dot(shift_m) / self.face.dot(self.sun));
-            // Beside its start as well: the plane may go on below something else.
+            // And beside the start: the plane may continue below another surface.
             [start_m, origin_m + shift_m].into_iter().any(|start_m| {
                 reaches(start_m, self.sun) || (self.spread > 0.0 && reaches(start_m, self.sun + aside * self.spread))
             })
@@ -309,13 +310,13 @@ mod tests {
             assert_eq!((acne.wrong, acne.acne.as_slice(), acne.leaks.len()), (1, &[in_light][..], 0));
             let leak = found(|seen| seen.pixels[in_shade] = 0.2, is_soft, 0.1);
             assert_eq!((leak.wrong, leak.acne.len(), leak.leaks.as_slice()), (0, 0, &[in_shade][..]));
-            // Nothing that is not a number passes for light or for shade.
+            // NaN is neither light nor shade.
             assert_eq!(found(|seen| seen.pixels[in_light] = f32::NAN, is_soft, 0.1).wrong, 1);
         }
     }
 
     #[test]
-    fn what_lies_within_reach_of_an_edge_is_excused_and_what_lies_beyond_is_not() {
+    fn errors_within_reach_of_an_edge_are_no_defects_and_errors_beyond_are() {
         // The shadow's edge along the block's side is at z = 1; the reach is across the light.
         for (z, reach_m, expected) in [(1.3, 0.1, 1), (1.3, 0.6, 0), (2.5, 0.6, 1)] {
             let pixel = at(0.5, z);

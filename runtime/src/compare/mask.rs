@@ -1,13 +1,13 @@
-//! How a hard mask compares with hard truth.
+//! How far a hard mask agrees with hard truth.
 //!
-//! Both ask one point a pixel, and answer lit or shaded. Where they differ, that may be a defect, or one of three things that
-//! no technique which rasterises can help, and each is counted apart:
+//! Both test one point per pixel, and say lit or shaded. Where they differ, that is a defect, unless one of three things explains it
+//! that no rasterising technique can avoid. Each is counted apart:
 //!
 //! * **The band.** The pixel lies within one pixel of an edge in truth's picture.
-//! * **Fine edges.** Truth itself changes within a fraction of a pixel ([`FINE_PX`]): at an edge of something too thin for
-//!   the picture to show, or between things closer together than that along the line of sight.
-//! * **Other surfaces.** Rasterising shows another surface there than a ray meets (at a silhouette, or through a crack between
-//!   triangles that do not share their corners), and the mask is right about that one.
+//! * **Fine edges.** Truth itself changes within a fraction of a pixel ([`FINE_PX`]): at an edge of something too thin for the picture
+//!   to show, or between surfaces closer together than that along the line of sight.
+//! * **Other surfaces.** Rasterising shows another surface than a ray hits (at a silhouette, or through a crack between triangles that
+//!   do not share their corners), and the mask is right about that surface.
 
 use super::agreement::neighbours;
 use crate::image::Raster;
@@ -18,40 +18,40 @@ use crate::volumes::nearest::nearest;
 use glam::{DVec3, Vec3};
 use sunbake::trace::Hit;
 
-/// How near to a pixel's centre an edge may pass that no other pixel shows, in pixels. Rasterising moves corners by up to a
+/// How far from a pixel's centre an edge may pass that no other pixel shows, in pixels. Rasterising moves corners by up to a
 /// 512th and volumes are moved by a 128th; slanted surfaces magnify both.
 pub const FINE_PX: f32 = 0.25;
 /// How far towards the eye a surface may be moved for the same reason, in pixels.
 const FINE_DEPTH_PX: f64 = 1.0 / 32.0;
-/// How near to a caster's edge a ray may pass, in pixels of the place that it starts from.
+/// How near to a caster's edge a ray may pass, in pixels at the point that it starts from.
 const GRAZING_PX: f64 = 1.0 / 64.0;
-/// How near to where the mask shows a surface another one may pass, in pixels.
+/// How near another surface may be to the one that the mask shows, in pixels.
 const SURFACE_PX: f32 = 1.0 / 16.0;
-/// Cosine between a surface and a line of sight below which it is seen edge on.
+/// Largest cosine between normal and line of sight of a surface that counts as seen edge on.
 const EDGE_ON: f64 = 1.0 / 32.0;
-/// Places tried on each of three circles around a pixel's centre.
-const PLACES: usize = 16;
+/// Rays on each of three circles around a pixel's centre.
+const RAYS_PER_CIRCLE: usize = 16;
 
-/// What a hard mask is like beside hard truth.
+/// How far a hard mask agrees with hard truth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MaskAgreement {
     /// Pixels compared.
     pub pixels: usize,
     /// Pixels in the band.
     pub in_band: usize,
-    /// Of these, wrong ones.
+    /// Wrong pixels in the band.
     pub wrong_in_band: usize,
-    /// Wrong ones outside of it, at fine edges.
+    /// Wrong pixels outside of the band, at fine edges.
     pub at_fine_edges: usize,
-    /// Wrong ones outside of it that show another surface, and are right about it.
+    /// Wrong pixels outside of the band that show another surface, and are right about it.
     pub of_other_surfaces: usize,
-    /// Wrong ones for which there is no excuse, in row order.
+    /// Other wrong pixels: indices in row order.
     pub unexplained: Vec<usize>,
 }
 
 impl MaskAgreement {
-    /// Compares a mask of a light's centre with truth's. `depths_m` tells which surface the mask is of: its place along the
-    /// camera's axis, without end where there is none.
+    /// Compares a mask with hard truth. `depths_m` are the depths of the surfaces that the mask shows, along the camera's axis;
+    /// infinite without a surface.
     pub fn new(
         shot: &Shot,
         moment: &Moment,
@@ -62,10 +62,10 @@ impl MaskAgreement {
     ) -> Self {
         let [width, height] = shot.view.size.map(|edge| edge as usize);
         let mut found = Self { pixels: truth.pixels.len(), ..Self::default() };
-        let excuses = Excuses { shot, moment, light };
+        let reasons = Reasons { shot, moment, light };
         for (i, &depth_m) in depths_m.iter().enumerate() {
             let is_edge = neighbours(i, width, height).any(|n| truth.pixels[n] != truth.pixels[i]);
-            // A mask knows nothing between lit and shaded: whatever else it says is wrong, and has no excuse.
+            // A mask holds only 0 and 1; any other value is wrong, and nothing explains it.
             let is_wrong = mask.pixels[i] != truth.pixels[i];
             let is_lit = mask.pixels[i] == 1.0;
             found.in_band += usize::from(is_edge);
@@ -74,9 +74,9 @@ impl MaskAgreement {
                 found.unexplained.push(i);
             } else if is_edge {
                 found.wrong_in_band += 1;
-            } else if excuses.is_at_fine_edge(i, is_lit) || (!is_lit && excuses.grazes_a_caster(i)) {
+            } else if reasons.is_at_fine_edge(i, is_lit) || (!is_lit && reasons.grazes_a_caster(i)) {
                 found.at_fine_edges += 1;
-            } else if excuses.is_of_other_surface(i, is_lit, f64::from(depth_m)) {
+            } else if reasons.shows_other_surface(i, is_lit, f64::from(depth_m)) {
                 found.of_other_surfaces += 1;
             } else {
                 found.unexplained.push(i);
@@ -85,11 +85,11 @@ impl MaskAgreement {
         found
     }
 
-    /// The numbers, in words.
+    /// The numbers as a sentence.
     pub fn sentence(&self) -> String {
         format!(
             "{} pixels compared, {} in the band ({} wrong there); elsewhere wrong: {} at fine edges, {} of other surfaces, {} \
-             without excuse",
+             unexplained",
             self.pixels,
             self.in_band,
             self.wrong_in_band,
@@ -110,26 +110,25 @@ impl MaskAgreement {
     }
 }
 
-/// Looks for reasons why a pixel's mask, lit or not, may differ from truth.
-struct Excuses<'a> {
+/// Reasons why a pixel's mask, lit or not, may differ from truth.
+struct Reasons<'a> {
     shot: &'a Shot<'a>,
     moment: &'a Moment,
     light: LightKind,
 }
 
-impl Excuses<'_> {
+impl Reasons<'_> {
     /// Rays through a pixel's centre and on three circles around it, the widest [`FINE_PX`] away.
     fn rays(&self, pixel: usize) -> impl Iterator<Item = Vec3> {
         let (centre, view) = (self.shot.ray(pixel), self.shot.view);
-        std::iter::once(centre).chain((0..3 * PLACES).map(move |i| {
-            let (sin, cos) = (i as f32 * std::f32::consts::TAU / PLACES as f32).sin_cos();
-            let reach_px = [FINE_PX / 16.0, FINE_PX / 4.0, FINE_PX][i / PLACES];
+        std::iter::once(centre).chain((0..3 * RAYS_PER_CIRCLE).map(move |i| {
+            let (sin, cos) = (i as f32 * std::f32::consts::TAU / RAYS_PER_CIRCLE as f32).sin_cos();
+            let reach_px = [FINE_PX / 16.0, FINE_PX / 4.0, FINE_PX][i / RAYS_PER_CIRCLE];
             centre + (view.ray_per_column * cos + view.ray_per_row * sin) * reach_px
         }))
     }
 
-    /// Whether truth says the same as the mask somewhere within a fraction of a pixel, or a fraction of a pixel before the
-    /// surface.
+    /// Whether truth equals the mask somewhere within a fraction of a pixel, or a fraction of a pixel before the surface.
     fn is_at_fine_edge(&self, pixel: usize, is_lit: bool) -> bool {
         let stage = self.shot.stage;
         let nearer = |ray: Vec3, hit: &Hit| {
@@ -143,8 +142,8 @@ impl Excuses<'_> {
         })
     }
 
-    /// Whether a pixel's ray to the light, which meets nothing, passes a caster by less than a fraction of a pixel: something
-    /// whose shadow may be thinner than the circles find. What lies at the surface itself is no such thing.
+    /// Whether a pixel's ray to the light passes a caster by less than a fraction of a pixel. The caster's shadow may be too thin for
+    /// the circles to find. Casters at the surface itself do not count.
     fn grazes_a_caster(&self, pixel: usize) -> bool {
         let stage = self.shot.stage;
         let Some(hit) = self.shot.hits()[pixel] else { return false };
@@ -166,9 +165,9 @@ impl Excuses<'_> {
         })
     }
 
-    /// Whether the mask is right about a surface that passes where it shows one, though a ray meets another first. Of one
-    /// that is seen edge on, rasterising may show either side.
-    fn is_of_other_surface(&self, pixel: usize, is_lit: bool, depth_m: f64) -> bool {
+    /// Whether the mask is right about another surface at the depth that it shows, though a ray hits a different one first. Of a
+    /// surface seen edge on, rasterising may show either side.
+    fn shows_other_surface(&self, pixel: usize, is_lit: bool, depth_m: f64) -> bool {
         let stage = self.shot.stage;
         if depth_m.is_infinite() {
             return is_lit && self.rays(pixel).any(|ray| stage.primary_hit(self.eye_m(), ray.as_dvec3()).is_none());
@@ -185,7 +184,7 @@ impl Excuses<'_> {
         (0..stage.geometry.triangles.len()).filter(|&triangle| !stage.sides(triangle).is_none()).any(|triangle| {
             let corners_m = stage.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
             let slant = stage.geometry.normal(triangle).dot(way);
-            // What rasterising moves sideways, slanted surfaces turn into depth.
+            // Rasterising moves surfaces sideways; on slanted ones that changes the depth.
             let along_m = (near_m / slant.abs().max(f64::MIN_POSITIVE)).min(near_m / f64::from(SURFACE_PX));
             let place = [0.0, 0.5, -0.5, 1.0, -1.0].into_iter().find_map(|share| {
                 let place_m = shown_m + way * (along_m * share);
@@ -196,7 +195,7 @@ impl Excuses<'_> {
             let Some(barycentric) = place else { return false };
             let sides = stage.sides(triangle);
             let is_drawn = if slant < 0.0 { sides.front } else { sides.back };
-            // Moving corners may turn over what is seen edge on, or is thinner than they move.
+            // Moving the corners may turn over a triangle that is seen edge on, or is thinner than they move.
             let [a, b, c] = corners_m;
             let longest_m = (b - a).length().max((c - b).length()).max((a - c).length());
             let thin_m = (b - a).cross(c - a).length() * slant.abs() / longest_m.max(f64::MIN_POSITIVE);

@@ -5,7 +5,7 @@ use super::report::TechniqueEntry;
 use super::visibility_difference;
 use crate::image::Raster;
 use crate::light::{codes_from_display, display_from_light};
-use crate::sheet::{Table, heat, heat_map};
+use crate::sheet::{PictureTable, heat, heat_map};
 use crate::texture::srgb_from_linear;
 
 /// Most columns of the sheet.
@@ -56,7 +56,7 @@ pub fn sheet(title: &[String], outcome: &Outcome, pair: BestPair, clocks: &[Stri
     let name = |technique: usize| outcome.techniques[technique].family.clone();
     let [baked, live] = [name(pair.baked), name(pair.live)];
     let mean = |technique: usize, frame: usize| outcome.techniques[technique].frames[frame].error.mean;
-    let table = Table {
+    let table = PictureTable {
         title: title.to_vec(),
         rows: vec![
             (baked.clone(), row(&lit, pair.baked)),

@@ -1,26 +1,26 @@
-//! The sun's disc, as many directions.
+//! Directions over the sun's disc.
 
 use glam::DVec3;
 
-/// The angle between neighbours of the spiral: a full turn over the square of the golden ratio.
+/// The angle between successive points of the spiral: a full turn over the square of the golden ratio.
 pub const GOLDEN_ANGLE_RAD: f64 = 2.399_963_229_728_653;
 
 /// The sun's disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunDisc {
-    /// Unit vector towards its centre.
+    /// Unit vector towards the sun's centre.
     pub centre: DVec3,
     across: [DVec3; 2],
     radius_rad: f64,
 }
 
 impl SunDisc {
-    /// A disc about a direction.
+    /// A disc of this angular radius around a unit vector.
     pub fn new(centre: DVec3, radius_rad: f64) -> Self {
         Self { centre, across: centre.any_orthonormal_pair().into(), radius_rad }
     }
 
-    /// The direction of ray `i` of `count`, the spiral turned by `turn`: even by area over the disc.
+    /// The direction of ray `i` of `count`, even by area over the disc. `turn` rotates the spiral, in radians.
     pub fn direction(&self, i: u32, count: u32, turn: f64) -> DVec3 {
         let share = (f64::from(i) + 0.5) / f64::from(count);
         let from_centre = 1.0 - (1.0 - self.radius_rad.cos()) * share;

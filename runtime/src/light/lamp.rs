@@ -1,11 +1,11 @@
-//! A lamp at a moment: where it is, how bright it is, and which stretch of its path stands for it.
+//! A lamp at a moment: where it is, how bright it is, and which stretch of its path represents it.
 //!
-//! The lamp is a ball, taken as the stretch of its own path within one radius of its centre, before and behind: what is
-//! seen of it is the lit share of the time in which its centre passes there. That window is a diameter over the speed,
-//! less what lies before the path's start and after its end, and it bends with the path.
+//! The lamp is a ball. It is represented by the stretch of its path within one radius of its centre, before and behind: its visibility
+//! is the lit share of the time in which the centre passes there. That window is the diameter over the speed, cut off at the path's
+//! start and end, and it follows the path's bends.
 //!
-//! **Brightness.** Nobody says how bright a lamp is, so it is as bright as makes a picture readable: half the scene's half
-//! diagonal away it lights a surface that faces it as the noon sun would, and it falls with the square of distance.
+//! **Brightness.** Sets do not say how bright a lamp is, so it is as bright as makes a picture readable: at half the scene's half
+//! diagonal it lights a surface that faces it like the noon sun, and it falls off with the square of distance.
 
 use glam::{DVec3, Vec3};
 use sunbake::lamp::LampPath;
@@ -15,27 +15,27 @@ use sunbake_shaders::LampUniform;
 const REFERENCE_LIGHT: Vec3 = Vec3::new(1.9, 1.55, 1.1);
 /// The reference distance, as a share of the scene's half diagonal.
 const REFERENCE_SHARE: f64 = 0.5;
-/// Balls a metre of a lamp that is a point.
+/// Balls per metre of a point lamp.
 const POINT: f32 = 1e9;
 
-/// A lamp, as a frame needs it.
+/// A lamp at a moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LampMoment {
-    /// Where its centre is, bake space.
+    /// Its centre, bake space, in metres.
     pub position_m: Vec3,
     /// The middle of its window, path time.
     pub t: f32,
     /// Length of its window, path time.
     pub width_t: f32,
-    /// Its radius.
+    /// Its radius in metres; 0 for a point.
     pub radius_m: f32,
-    /// Its light on a surface that faces it from a metre away.
+    /// Its light on a surface that faces it from one metre away: linear RGB.
     pub light: Vec3,
-    /// How far its light goes, beyond which none of it is seen: [`WITHOUT_END`], unless it is cut off to save work.
+    /// Distance in metres beyond which it gives no light: [`WITHOUT_END`], unless it is cut off to save work.
     pub range_m: f32,
 }
 
-/// Range of a lamp that lights all that sees it. Its square is a number still.
+/// Range of a lamp that is not cut off. Its square is still finite in `f32`.
 pub const WITHOUT_END: f32 = 1e18;
 
 impl LampMoment {
@@ -58,7 +58,7 @@ impl LampMoment {
         if self.radius_m > 0.0 { 0.5 / self.radius_m } else { POINT }
     }
 
-    /// What the GPU needs to know of it.
+    /// The uniform that shaders read.
     pub fn uniform(&self) -> LampUniform {
         LampUniform {
             position_m: self.position_m.into(),
@@ -72,7 +72,7 @@ impl LampMoment {
         }
     }
 
-    /// Its light on a matt surface, a share `seen` of it: twin of `lamp_shade.wgsl`.
+    /// Its light that a matt surface reflects, at visibility `seen`. Twin of `lamp_shade.wgsl`.
     pub fn on(&self, base_color: Vec3, normal: Vec3, way_m: Vec3, seen: f32) -> Vec3 {
         let distance2 = way_m.length_squared().max(1e-12);
         if distance2 > self.range_m * self.range_m {

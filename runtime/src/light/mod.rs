@@ -4,12 +4,12 @@
 //! Kasten and Young ("Revised optical air mass tables and approximation formula", *Applied Optics* 28, 1989), the depths
 //! those of clear air with a little dust.
 //!
-//! **Brightness.** A noon is some thousand times brighter than a dusk. The eye follows, a picture with a fixed exposure
-//! cannot: the sun's brightness is therefore compressed by a power (`ADAPTATION`), and all light is lifted as what level
-//! ground receives falls (`EYE`), as if the eye had gone part of the way.
+//! **Brightness.** Noon is some thousand times brighter than dusk. The eye adapts, a picture with a fixed exposure cannot. The sun's
+//! brightness is therefore compressed by a power (`ADAPTATION`), and all light is scaled up as the light on level ground falls
+//! (`EYE`), as if the eye had adapted in part.
 //!
-//! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground glows with what it receives. None of this
-//! is measured: it is there so that the shadows under study fall in a believable light.
+//! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground reflects what it receives. None of this
+//! is measured. It gives the shadows a plausible light.
 
 pub(crate) mod disc;
 mod lamp;
@@ -31,55 +31,55 @@ use sunbake_shaders::FrameUniform;
 const AIR_DEPTH: Vec3 = Vec3::new(0.10, 0.165, 0.31);
 /// Power by which brightness is compressed.
 const ADAPTATION: f32 = 0.42;
-/// Power by which all light is lifted as the light on level ground falls below [`NOON_LIGHT`].
+/// Power by which all light is scaled up as the light on level ground falls below [`NOON_LIGHT`].
 const EYE: f32 = 0.38;
 /// Luminance of the light on level ground under a high sun.
 const NOON_LIGHT: f32 = 1.9;
-/// What a surface sends back of the light that reaches it, for the ground's glow.
+/// Share of light that the ground reflects, for red, green and blue.
 const GROUND_ALBEDO: Vec3 = Vec3::new(0.36, 0.31, 0.25);
 /// Weights of red, green and blue in luminance (ITU-R BT.709).
 pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// A moment of the day, as a frame needs it.
+/// A time of day: where the lights are, and how bright they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
-    /// Path time.
+    /// Path time, 0 to 1.
     pub t: f32,
-    /// The sun's width in path time; 0 without a sun.
+    /// The sun's width in path time; 0 without a sun and for a point.
     pub width_t: f32,
     /// Unit vector towards the sun; zero without a sun.
     pub sun_direction: Vec3,
-    /// Angular radius of the sun's disc.
+    /// Angular radius of the sun's disc, in radians; 0 for a point.
     pub sun_radius_rad: f32,
     /// One over the sun's angular diameter; very large for a point.
     pub discs_per_radian: f32,
     /// The light.
     pub daylight: Daylight,
-    /// A lamp in the scene, if one is to be seen.
+    /// The lamp in the scene, if there is one.
     pub lamp: Option<LampMoment>,
 }
 
-/// Light and its colours, linear.
+/// Light of sun, sky and ground: linear RGB, where 1 is a white surface at full exposure.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Daylight {
-    /// The sun on a surface that faces it.
+    /// Sunlight on a surface that faces the sun.
     pub sun_light: Vec3,
-    /// The sky on a surface that looks up.
+    /// Skylight on a surface that faces up.
     pub sky_light: Vec3,
-    /// The ground on a surface that looks down.
+    /// Light from the ground on a surface that faces down.
     pub ground_light: Vec3,
-    /// The sky's colour overhead.
+    /// The sky's radiance overhead.
     pub zenith: Vec3,
-    /// The sky's colour at the horizon.
+    /// The sky's radiance at the horizon.
     pub horizon: Vec3,
-    /// What the sky has more of around the sun.
+    /// Radiance that the sky has in addition around the sun.
     pub glow: Vec3,
-    /// What is seen below the horizon where there is no ground.
+    /// Radiance below the horizon where there is no ground.
     pub haze: Vec3,
 }
 
 impl Moment {
-    /// The moment `t` of a path; without a path, a dusk in which nothing is lit by the sun.
+    /// Path time `t` of a sun's path. Without a path it is dusk, and there is no sun.
     pub fn new(path: Option<&SunPath>, t: f64) -> Self {
         let Some(path) = path else {
             let daylight = Daylight { sun_light: Vec3::ZERO, glow: Vec3::ZERO, ..Daylight::at_height(-0.1) };
@@ -106,12 +106,12 @@ impl Moment {
         }
     }
 
-    /// The same moment without the sun's own light; the sky stays.
+    /// The same moment without sunlight; the sky stays.
     pub fn without_sun(self) -> Self {
         Self { daylight: Daylight { sun_light: Vec3::ZERO, ..self.daylight }, ..self }
     }
 
-    /// The same moment with nothing but what comes straight from the sun and the lamp. What is behind the scene stays.
+    /// The same moment without ambient light: only sun and lamp light surfaces. The background stays.
     pub fn without_sky(self) -> Self {
         let daylight = Daylight { sky_light: Vec3::ZERO, ground_light: Vec3::ZERO, ..self.daylight };
         Self { daylight, ..self }
@@ -127,7 +127,7 @@ impl Moment {
         self.lamp.is_some() && self.sun_direction == Vec3::ZERO
     }
 
-    /// What the GPU needs to know of a view at this moment.
+    /// The uniform that shaders read of a view at this moment.
     pub fn uniform(&self, view: &View) -> FrameUniform {
         let light = &self.daylight;
         FrameUniform {
@@ -158,7 +158,7 @@ impl Moment {
     }
 }
 
-/// Discs a radian of a sun that is a point: any side of a plane is wholly before or behind it.
+/// Discs per radian of a point sun: it is wholly above or below any plane.
 const POINT: f32 = 1e9;
 
 impl Daylight {
@@ -188,7 +188,7 @@ impl Daylight {
         light.exposed_for((sun_light * up + sky_light).dot(LUMINANCE))
     }
 
-    /// The same light, seen by an eye that has got used to what level ground receives.
+    /// The same light, as seen by an eye that has adapted to the light on level ground.
     fn exposed_for(self, on_level_ground: f32) -> Self {
         let gain = (NOON_LIGHT / on_level_ground.max(0.02)).powf(EYE).max(1.0);
         Self {
@@ -203,13 +203,13 @@ impl Daylight {
     }
 }
 
-/// Keeps a low sun orange where the air alone would leave it a pure red that no display can show.
+/// Keeps a low sun orange; the air alone would make it a pure red that no display can show.
 fn soften(tint: Vec3) -> Vec3 {
     let soft = tint.powf(0.72);
     soft / soft.dot(LUMINANCE)
 }
 
-/// How much more air there is in the sun's way than straight up; `height` is the sine of its elevation.
+/// The mass of air in the sun's way, relative to straight up. `height` is the sine of the sun's elevation.
 fn air_mass(height: f32) -> f32 {
     let elevation_deg = height.clamp(0.0, 1.0).asin().to_degrees();
     1.0 / (height.max(0.0) + 0.505_72 * (elevation_deg + 6.079_95).powf(-1.636_4))

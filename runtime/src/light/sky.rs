@@ -27,15 +27,15 @@ impl Moment {
     }
 }
 
-/// Rows and columns of the rule by which the sky is summed up.
-const RULE: [usize; 2] = [24, 48];
+/// Rows and columns of the quadrature over the sky.
+const QUADRATURE: [usize; 2] = [24, 48];
 
 impl Moment {
-    /// What the sky and the ground send, in spherical harmonics up to degree two, for surfaces that know how they see it.
+    /// Radiance of sky and ground in spherical harmonics up to degree two, for surfaces with baked sky visibility.
     ///
-    /// Above the horizon it has the sky's own colours, but not the sun's disc, so scaled that level ground receives just
-    /// [`super::Daylight::sky_light`]; below it, [`super::Daylight::ground_light`] from everywhere. In the open, a surface that looks up or down is therefore
-    /// lit as by the plain model of hemispheres; one that looks aside knows which way the sun is.
+    /// Above the horizon these are the sky's colours without the sun's disc, scaled so that level ground receives
+    /// [`super::Daylight::sky_light`]. Below it is [`super::Daylight::ground_light`] from everywhere. An unoccluded surface that faces
+    /// up or down is therefore lit as by the hemisphere model; one that faces aside is brighter towards the sun.
     pub fn sky_harmonics(&self) -> [Vec3; harmonics::COUNT] {
         let mut above = [Vec3::ZERO; harmonics::COUNT];
         let mut below = [0.0f32; harmonics::COUNT];
@@ -57,7 +57,7 @@ impl Moment {
 
 /// Directions over the sphere and the solid angle of each: even steps of height and of azimuth, none on the horizon.
 fn sphere() -> impl Iterator<Item = (Vec3, f32)> {
-    let [rows, columns] = RULE;
+    let [rows, columns] = QUADRATURE;
     let weight = 4.0 * std::f32::consts::PI / (rows * columns) as f32;
     (0..rows * columns).map(move |i| {
         let height = ((i / columns) as f32 + 0.5) / rows as f32 * 2.0 - 1.0;

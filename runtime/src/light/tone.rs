@@ -1,8 +1,7 @@
 //! From linear light to a display's codes.
 //!
 //! The curve is a rational fit of a film's response, after Krzysztof Narkowicz ("ACES filmic tone mapping curve", 2016),
-//! scaled so that middle grey stays where it is. Light that is too bright for a colour drifts towards white first, as
-//! film does, instead of clipping channel by channel.
+//! scaled so that middle grey is kept. Very bright colours turn towards white, as on film, instead of clipping channel by channel.
 
 use super::LUMINANCE;
 use crate::texture::srgb_from_linear;

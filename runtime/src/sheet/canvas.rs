@@ -1,4 +1,4 @@
-//! A picture to put pictures and words on.
+//! A picture on which pictures and text are drawn.
 
 use super::font::{CELL, glyph, text_width};
 use crate::image::Raster;
@@ -8,12 +8,12 @@ use glam::Vec3;
 
 /// Background of sheets.
 pub const PAPER: [u8; 3] = [24, 24, 26];
-/// Words.
+/// Text.
 pub const INK: [u8; 3] = [236, 232, 224];
-/// Words of less weight.
+/// Less important text.
 pub const QUIET_INK: [u8; 3] = [156, 152, 146];
 
-/// A sheet in the making.
+/// A sheet while it is drawn.
 pub struct Canvas {
     picture: Raster<[u8; 3]>,
 }
@@ -29,7 +29,7 @@ impl Canvas {
         self.picture
     }
 
-    /// Fills a rectangle; what lies outside the sheet is left out.
+    /// Fills a rectangle, clipped to the sheet.
     pub fn rectangle(&mut self, [x, y]: [u32; 2], [width, height]: [u32; 2], color: [u8; 3]) {
         let [sheet_width, sheet_height] = self.picture.size;
         for row in y..(y + height).min(sheet_height) {
@@ -39,7 +39,7 @@ impl Canvas {
         }
     }
 
-    /// Puts a picture down by its upper left corner.
+    /// Draws a picture with its upper left corner at a point.
     pub fn picture(&mut self, [x, y]: [u32; 2], picture: &Raster<[u8; 3]>) {
         for row in 0..picture.size[1] {
             for column in 0..picture.size[0] {
@@ -48,7 +48,7 @@ impl Canvas {
         }
     }
 
-    /// Writes a line of words, `scale` pixels to each of the font's.
+    /// Writes a line of text; each pixel of the font becomes `scale` pixels.
     pub fn text(&mut self, [x, y]: [u32; 2], text: &str, scale: u32, ink: [u8; 3]) {
         for (i, character) in text.chars().enumerate() {
             let left = x + i as u32 * (CELL[0] + 1) * scale;
@@ -60,13 +60,13 @@ impl Canvas {
         }
     }
 
-    /// Writes a line of words around a middle.
+    /// Writes a line of text, centred on a point.
     pub fn text_centred(&mut self, [middle, y]: [u32; 2], text: &str, scale: u32, ink: [u8; 3]) {
         self.text([middle.saturating_sub(text_width(text, scale) / 2), y], text, scale, ink);
     }
 }
 
-/// A picture made smaller by a whole number, so that it is no wider than `width`. Light is averaged, not codes.
+/// A picture made smaller by a whole number, so that it is no wider than `width` pixels. Linear light is averaged, not sRGB codes.
 pub fn thumbnail(picture: &Raster<[u8; 3]>, width: u32) -> Raster<[u8; 3]> {
     let shrink = picture.size[0].div_ceil(width.max(1)).min(picture.size[1]).max(1);
     let light = |code: &[u8; 3]| Vec3::from_array(code.map(linear_from_srgb));

@@ -1,5 +1,5 @@
 //! Letters of five by seven pixels, for labels: digits, Latin letters and the little punctuation that times, numbers and
-//! errors need. What is not there is drawn as a box.
+//! errors need. Other characters are drawn as a box.
 
 /// Width and height of a letter, in its own pixels. Letters stand one pixel apart.
 pub const CELL: [u32; 2] = [5, 7];
@@ -83,7 +83,7 @@ const GLYPHS: [(char, [u8; 5]); 75] = [
     ('z', [0x44, 0x64, 0x54, 0x4c, 0x44]),
 ];
 
-/// What stands for a letter that there is none of.
+/// Drawn for a character without a glyph.
 const BOX: [u8; 5] = [0x7f, 0x41, 0x41, 0x41, 0x7f];
 
 /// The columns of a letter.
@@ -94,7 +94,7 @@ pub(super) fn glyph(character: char) -> [u8; 5] {
     }
 }
 
-/// Width of a line of words.
+/// Width of a line of text, in pixels.
 pub fn text_width(text: &str, scale: u32) -> u32 {
     (text.chars().count() as u32 * (CELL[0] + 1)).saturating_sub(1) * scale
 }

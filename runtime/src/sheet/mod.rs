@@ -1,4 +1,4 @@
-//! Sheets of pictures: small pictures side by side, with words under them.
+//! Sheets of small pictures with labels.
 
 mod canvas;
 mod font;
@@ -12,7 +12,7 @@ use crate::image::Raster;
 
 /// Space around and between pictures, in pixels.
 const GAP: u32 = 10;
-/// How much larger than the font's own pixels labels are drawn.
+/// Pixels per pixel of the font, for labels.
 const SCALE: u32 = 2;
 
 /// Pictures of one size in reading order, each with a label under it.
@@ -33,29 +33,29 @@ pub fn contact_sheet(pictures: &[(Raster<[u8; 3]>, String)], columns: u32) -> Ra
     canvas.finish()
 }
 
-/// A table of pictures: a name before each row, words over and under each column, and a bar of colours that says what
-/// those of the last row mean. Long tables are broken into bands of [`Table::band`] columns, one under the other.
-pub struct Table {
+/// A table of pictures: a name before each row, text over and under each column, and a legend for the colours of the last row. Tables
+/// with many columns are broken into bands of [`PictureTable::band`] columns, one under the other.
+pub struct PictureTable {
     /// Lines above everything; the first is larger.
     pub title: Vec<String>,
     /// Name and pictures of each row; all pictures have one size.
     pub rows: Vec<(String, Vec<Raster<[u8; 3]>>)>,
-    /// Over each column.
+    /// Text over each column.
     pub heads: Vec<String>,
-    /// Under each column.
+    /// Text under each column.
     pub feet: Vec<String>,
-    /// Columns side by side.
+    /// Most columns side by side.
     pub band: u32,
-    /// What the last row's colours mean: a value for each end of the bar, and words beside it.
+    /// The legend of the last row's colours: the values at both ends of the bar, and the text beside it.
     pub legend: ([String; 2], String),
-    /// How a share of the bar is coloured.
+    /// The colour at a share of the bar, 0 to 1.
     pub legend_color: fn(f32) -> [u8; 3],
 }
 
-/// Height of a line of words with the space below it.
+/// Height of a line of text and of the space below it.
 const LINE: u32 = CELL[1] * SCALE + GAP;
 
-impl Table {
+impl PictureTable {
     /// Draws the table.
     pub fn draw(&self) -> Raster<[u8; 3]> {
         let [width, height] = self.rows.iter().flat_map(|(_, row)| row).map(|p| p.size).next().unwrap_or([1, 1]);
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn a_table_holds_every_picture_in_bands() {
         let row = |shade: u8| (0..5).map(|_| Raster::filled([50, 20], [shade, 0, 200])).collect::<Vec<_>>();
-        let table = Table {
+        let table = PictureTable {
             title: vec!["title".into()],
             rows: vec![("first".into(), row(1)), ("second".into(), row(2))],
             heads: vec!["head".into(); 5],

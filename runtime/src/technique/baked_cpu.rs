@@ -1,7 +1,7 @@
-//! Baked maps, evaluated on the CPU: the twin of [`super::BakedGpu`], and its stand-in where there is no GPU.
+//! Baked maps, evaluated on the CPU: the twin of [`super::BakedGpu`], used instead of it where there is no GPU.
 //!
-//! One primary ray a pixel and one evaluation of the maps. Wrong where the maps are: by their codes' step, by a texel's
-//! size, and where the sun's disc is not a line along its path.
+//! Each pixel takes one primary ray and one evaluation of the maps. Errors are those of the maps: the step of stored times, the size of
+//! a texel, and, with few lanes, taking the sun's disc for lines along its path.
 
 use super::{Technique, on_cpu};
 use crate::gpu::{GpuError, Output};
@@ -31,7 +31,7 @@ impl<'a> BakedCpu<'a> {
         Self { stage, pages, filter }
     }
 
-    fn lamp_seen(&self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &LampMoment) -> f32 {
+    fn lamp_visibility_at(&self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &LampMoment) -> f32 {
         let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
         let triangle = hit.triangle as usize;
         let front = self.stage.geometry.normal(triangle).as_vec3();
@@ -40,7 +40,7 @@ impl<'a> BakedCpu<'a> {
         self.pages[page as usize].lamp_visibility(page_uv, face, way_m, self.filter, lamp)
     }
 
-    fn seen(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {
+    fn sun_visibility_at(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {
         let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
         let front = self.stage.geometry.normal(hit.triangle as usize).as_vec3();
         let face = towards_eye(front, front, shot.ray(pixel));
@@ -55,7 +55,7 @@ impl Technique for BakedCpu<'_> {
 
     fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
         let hits = shot.hits().par_iter().enumerate().with_min_len(64);
-        let seen = hits.map(|(pixel, hit)| hit.map_or(1.0, |hit| self.seen(shot, pixel, &hit, moment)));
+        let seen = hits.map(|(pixel, hit)| hit.map_or(1.0, |hit| self.sun_visibility_at(shot, pixel, &hit, moment)));
         Ok(Raster { size: shot.view.size, pixels: seen.collect() })
     }
 
@@ -63,7 +63,7 @@ impl Technique for BakedCpu<'_> {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &moment.lamp) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(lamp)) => self.lamp_seen(shot, pixel, hit, lamp),
+            (Some(hit), Some(lamp)) => self.lamp_visibility_at(shot, pixel, hit, lamp),
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })

@@ -1,7 +1,7 @@
-//! Ways to know how much of the sun, or of a lamp, a pixel's surface sees.
+//! Techniques: ways to find the visibility of the sun, or of a lamp, at each pixel.
 //!
-//! All answer with the same image, visibility from 0 to 1 where pixels without a surface read 1, so all are compared
-//! alike. What each costs and where it is wrong is said in its own file.
+//! All give the same kind of image: visibility from 0 to 1, where pixels without a surface read 1. So all are compared alike. Each
+//! file says what its technique costs and where it is wrong.
 
 mod baked_cpu;
 mod baked_gpu;
@@ -25,7 +25,7 @@ use crate::shot::Shot;
 use glam::Vec3;
 use serde::Serialize;
 
-/// What a frame took.
+/// Times of a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct FrameCost {
     /// Seconds on the CPU to find what its passes draw: silhouettes, or where maps lie.
@@ -34,15 +34,15 @@ pub struct FrameCost {
     pub passes: Option<FrameTimes>,
 }
 
-/// A way to know how much of the sun is seen.
+/// A way to find the visibility of a light.
 pub trait Technique {
     /// Its name, as on the command line.
     fn name(&self) -> String;
 
-    /// How much of the sun the surface at each pixel's centre sees.
+    /// Visibility of the sun from the surface at each pixel's centre, 0 to 1.
     fn visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError>;
 
-    /// How much of the lamp the surface at each pixel's centre sees; nothing where the moment has none.
+    /// Visibility of the lamp from the surface at each pixel's centre, 0 to 1; 0 where the moment has no lamp.
     fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError>;
 
     /// The picture, in linear light.
@@ -52,34 +52,34 @@ pub trait Technique {
         Ok(shade::lit_picture(shot, moment, &visibility, of_lamp.as_ref()))
     }
 
-    /// Bytes it keeps from frame to frame, beyond the scene itself.
+    /// Bytes of memory kept from frame to frame, beyond the scene itself.
     fn bytes(&self) -> u64;
 
-    /// What the last frame took, where it was drawn in passes.
+    /// Times of the last frame, where it was drawn in passes.
     fn cost(&self) -> FrameCost {
         FrameCost::default()
     }
 
-    /// The picture with what finds its shadows made visible; none where that is nothing one could see.
+    /// The picture with the geometry of its shadows made visible (shadow volumes). None for techniques without such geometry.
     fn shown(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
         Ok(None)
     }
 
-    /// What it decided for the last frame, and why, in words; nothing where there is nothing to decide.
+    /// What was decided for the last frame and why, as sentences. Empty where there is nothing to decide.
     fn plan(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// The same for machines; null where there is nothing to decide.
+    /// The same for programs. Null where there is nothing to decide.
     fn details(&self) -> serde_json::Value {
         serde_json::Value::Null
     }
 
-    /// Which effects a shot's pictures of a kind call for. Where that depends on the view and the light, it is the most that they may
-    /// take before the first of the kind, and after that what the last one took.
+    /// Which effects a shot's pictures of one kind need. Where that depends on the view and the light, it is an upper bound before the
+    /// first such picture, and afterwards what the last one needed.
     fn effects(&self, shot: &Shot, output: Output) -> DrawPlan;
 
-    /// What was built on the GPU for it; none where the CPU draws.
+    /// What was built on the GPU. None where the CPU draws.
     fn census(&self) -> Option<Census> {
         None
     }

@@ -1,16 +1,15 @@
-//! Truth: rays from every pixel's surface to the sun.
+//! Truth: rays from the surface at every pixel to the sun, on the CPU.
 //!
-//! * *Hard* truth asks one ray to the sun's centre, and answers 0 or 1.
-//! * *Soft* truth asks many rays over the sun's disc, evenly by area (a spiral of golden angles after Vogel, "A better
+//! * *Hard* truth traces one ray to the sun's centre, and gives 0 or 1.
+//! * *Soft* truth traces many rays over the sun's disc, evenly by area (a spiral of golden angles after Vogel, "A better
 //!   way to construct the sunflower head", *Mathematical Biosciences* 44, 1979), turned by a different angle at each
-//!   pixel; it answers with the share that reaches the sun. Only parts of the disc above the world's horizon and before
-//!   the surface's plane count.
+//!   pixel; it gives the share that reaches the sun. Only parts of the disc above the world's horizon and above the
+//!   surface's plane count.
 //!
-//! A lamp is asked alike: one ray to its centre, or many over the disc that its ball shows to the point, and a ray ends at
-//! the lamp.
+//! For a lamp it is the same: one ray to its centre, or many over the disc that its ball shows to the point. A ray ends at the lamp.
 //!
-//! The two are never mixed: a hard technique is right or wrong about the one, a soft technique about the other. Nothing is
-//! kept between frames. Soft truth is wrong by its sampling: with N rays a half-covered disc reads right to about 1/N.
+//! The two are never mixed: a hard technique is compared with hard truth, a soft one with soft truth. Nothing is kept between frames.
+//! The error of soft truth is its sampling: with N rays a half-covered disc is right to about 1/N.
 
 use super::{Technique, on_cpu};
 use crate::gpu::{GpuError, Output};
@@ -24,26 +23,26 @@ use rayon::prelude::*;
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit};
 
-/// Rays to the sun.
+/// How many rays are traced, and to where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Truth {
     /// One, to the centre.
     Hard,
-    /// Many, over the disc.
+    /// Many, spread over the disc.
     Soft {
-        /// How many.
+        /// Rays per pixel.
         rays: u32,
     },
 }
 
 impl Truth {
-    /// Rays over the disc, unless told otherwise.
+    /// Rays per pixel of soft truth, unless told otherwise.
     pub const DEFAULT_RAYS: u32 = 64;
 
-    fn lamp_seen(
+    fn lamp_visibility_from(
         self,
         stage: &Stage,
-        &RayOrigin { face, on_plane_m, point_m, origin_m }: &RayOrigin,
+        &ShadowRayOrigin { face, on_plane_m, point_m, origin_m }: &ShadowRayOrigin,
         pixel: usize,
         lamp: &Ball,
     ) -> f32 {
@@ -62,20 +61,27 @@ impl Truth {
         }
     }
 
-    /// How much of the sun's centre, or of the lamp's, a point sees that a ray has met, moved back along the ray by a step.
+    /// Visibility of the centre of the sun or of the lamp, 0 or 1, from the point that a ray has hit, moved back along the ray by
+    /// `step_m`.
     pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: LightKind) -> f32 {
-        let mut ray_origin = RayOrigin::new(stage, ray, hit);
+        let mut point = ShadowRayOrigin::new(stage, ray, hit);
         let back_m = ray.as_dvec3().normalize() * step_m;
-        ray_origin.point_m -= back_m;
-        ray_origin.origin_m -= back_m;
+        point.point_m -= back_m;
+        point.origin_m -= back_m;
         match (light, &stage.path, &moment.lamp) {
-            (LightKind::Sun, Some(path), _) => Self::Hard.seen(stage, &ray_origin, 0, &sun_of(path, moment)),
-            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_seen(stage, &ray_origin, 0, &ball_of(lamp)),
+            (LightKind::Sun, Some(path), _) => Self::Hard.sun_visibility_from(stage, &point, 0, &sun_of(path, moment)),
+            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_visibility_from(stage, &point, 0, &ball_of(lamp)),
             _ => 0.0,
         }
     }
 
-    fn seen(self, stage: &Stage, &RayOrigin { face, origin_m, .. }: &RayOrigin, pixel: usize, sun: &SunDisc) -> f32 {
+    fn sun_visibility_from(
+        self,
+        stage: &Stage,
+        &ShadowRayOrigin { face, origin_m, .. }: &ShadowRayOrigin,
+        pixel: usize,
+        sun: &SunDisc,
+    ) -> f32 {
         let tracer = stage.tracer();
         let reaches = |direction: DVec3| {
             direction.y > 0.0 && face.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
@@ -90,16 +96,17 @@ impl Truth {
     }
 }
 
-/// What a pixel shows, as the start of rays: the side that the eye is on.
-struct RayOrigin {
+/// Where a pixel's rays to the light start.
+struct ShadowRayOrigin {
+    /// Unit normal on the side that the eye is on.
     face: DVec3,
-    /// A corner: by it all points of a triangle agree about whether a lamp stands before their plane.
+    /// A corner of the triangle. With it all points of the triangle agree on which side of their plane a lamp is.
     on_plane_m: DVec3,
     point_m: DVec3,
     origin_m: DVec3,
 }
 
-impl RayOrigin {
+impl ShadowRayOrigin {
     fn new(stage: &Stage, ray: Vec3, hit: &Hit) -> Self {
         let triangle = hit.triangle as usize;
         let front = stage.geometry.normal(triangle);
@@ -135,9 +142,12 @@ impl Technique for Truth {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &sun) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(sun)) => {
-                self.seen(shot.stage, &RayOrigin::new(shot.stage, shot.ray(pixel), hit), pixel, sun)
-            }
+            (Some(hit), Some(sun)) => self.sun_visibility_from(
+                shot.stage,
+                &ShadowRayOrigin::new(shot.stage, shot.ray(pixel), hit),
+                pixel,
+                sun,
+            ),
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -148,9 +158,12 @@ impl Technique for Truth {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &lamp) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(lamp)) => {
-                self.lamp_seen(shot.stage, &RayOrigin::new(shot.stage, shot.ray(pixel), hit), pixel, lamp)
-            }
+            (Some(hit), Some(lamp)) => self.lamp_visibility_from(
+                shot.stage,
+                &ShadowRayOrigin::new(shot.stage, shot.ray(pixel), hit),
+                pixel,
+                lamp,
+            ),
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -179,7 +192,7 @@ pub enum LightKind {
     Lamp,
 }
 
-/// A lamp.
+/// A lamp's shape and reach.
 struct Ball {
     centre_m: DVec3,
     radius_m: f64,

@@ -1,22 +1,22 @@
-//! Bodies: triangles that hang together by edges, and which of them bound a solid.
+//! Bodies: triangles that are connected by edges, and which of them bound a solid.
 //!
-//! The volumes of a solid need half of the work: where a ray from a shaded point leaves towards the light through back
-//! faces, it has entered through front faces, so the front faces alone shade all that the body does. That takes two things:
+//! The volumes of a solid take half of the work: where a ray from a shaded point to the light leaves the body through a back face, it
+//! has entered through a front face, so the front faces alone cast the body's whole shadow. This takes two things:
 //!
-//! * The surface is *closed*: along every edge as many triangles run one way as the other. Edges of four triangles are
-//!   welcome, open edges, edges of three and Moebius strips are not.
-//! * It is *not inside out*, anywhere: no point has a negative winding number. One ray is cast from every triangle, and
-//!   the faces of its own body that it leaves and enters are counted. A body that is inside out throughout is turned over.
+//! * The surface is *closed*: along every edge as many triangles run one way as the other. Edges of four triangles are allowed; open
+//!   edges, edges of three triangles and Moebius strips are not.
+//! * It is nowhere *inside out*: no point has a negative winding number. One ray is cast from every triangle, and the faces of its own
+//!   body are counted that it leaves and enters through. A body that is inside out everywhere is turned over.
 //!
-//! Whatever fails is *open*, which is right for any triangles at all, and dearer.
+//! Any other body is *open*. That costs more, and is right for any triangles.
 
 use super::weld::Welded;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sunbake::trace::{Direction, Tracer};
 
-/// Tilts of rays against the normal that they start along, in units of two tangents: no plain ratios, so that rays through
-/// modelled things meet no edges. A ray that seems to start inside out is cast again along the others, and outvoted.
+/// Tilts of rays against the normal, along two tangents. They are irregular, so that rays through typical models hit no edges. If the
+/// first ray finds a negative winding number, the other two are cast as well, and the median counts.
 const TILTS: [[f64; 2]; 3] = [[0.211_324_87, 0.173_205_08], [-0.312_357_2, 0.087_431_9], [0.071_913_7, -0.283_177_1]];
 
 /// The bodies of a welded scene.
@@ -24,11 +24,11 @@ const TILTS: [[f64; 2]; 3] = [[0.211_324_87, 0.173_205_08], [-0.312_357_2, 0.087
 pub struct Bodies {
     /// For each triangle, its body.
     pub of_triangle: Vec<u32>,
-    /// For each body, what it is.
+    /// The shape of each body.
     pub shapes: Vec<Shape>,
 }
 
-/// What a body is.
+/// Whether a body bounds a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shape {
     /// It bounds a solid, front faces outside.
@@ -40,8 +40,8 @@ pub enum Shape {
 }
 
 impl Bodies {
-    /// Finds the bodies. `corners_m` are those that were welded, counter-clockwise from the front, and `flat` their indices
-    /// in the tracer's geometry.
+    /// Finds the bodies. `corners_m` are the welded triangles, counter-clockwise from the front; `flat` are their indices in the tracer's
+    /// geometry.
     pub fn new(welded: &Welded, corners_m: &[[Vec3; 3]], flat: &[u32], tracer: &Tracer) -> Self {
         let (of_triangle, count) = connected(welded);
         let mut is_closed = vec![true; count];
@@ -52,11 +52,11 @@ impl Bodies {
             }
         }
         let mut bodies = Self { of_triangle, shapes: vec![Shape::Open; count] };
-        bodies.tell_shapes(&is_closed, corners_m, flat, tracer);
+        bodies.find_shapes(&is_closed, corners_m, flat, tracer);
         bodies
     }
 
-    fn tell_shapes(&mut self, is_closed: &[bool], corners_m: &[[Vec3; 3]], flat: &[u32], tracer: &Tracer) {
+    fn find_shapes(&mut self, is_closed: &[bool], corners_m: &[[Vec3; 3]], flat: &[u32], tracer: &Tracer) {
         let mut triangle_of_flat = vec![u32::MAX; flat.iter().max().map_or(0, |&last| last as usize + 1)];
         for (triangle, &flat) in flat.iter().enumerate() {
             triangle_of_flat[flat as usize] = triangle as u32;
@@ -83,7 +83,7 @@ impl Bodies {
     }
 }
 
-/// Counts how often bodies wind around points.
+/// Computes winding numbers.
 struct Windings<'a> {
     corners_m: &'a [[Vec3; 3]],
     triangle_of_flat: &'a [u32],
@@ -92,7 +92,7 @@ struct Windings<'a> {
 }
 
 impl Windings<'_> {
-    /// How often a triangle's own body winds around the space before its front, by the median of up to three rays.
+    /// The winding number of a triangle's own body in front of the triangle: the median of up to three rays.
     fn before_front(&self, triangle: usize) -> i32 {
         let first = self.along(triangle, TILTS[0]);
         if first >= 0 {
@@ -109,7 +109,7 @@ impl Windings<'_> {
         let start_m = (corners[0] + corners[1] + corners[2]) / 3.0;
         let (right, up) = normal.any_orthonormal_pair();
         let direction = (normal + right * tilt[0] + up * tilt[1]).normalize();
-        // What lies on the start itself is coincident: neither before it nor behind it.
+        // Triangles at the start itself are coincident: neither in front nor behind.
         let coincident_m = start_m.abs().max_element() * 1e-6;
         let mut winding = 0;
         self.tracer.for_each_hit(start_m, &Direction::new(direction), |flat, distance_m| {
@@ -129,7 +129,7 @@ pub fn cross([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
 
-/// For each triangle a number that it shares with all that hang together with it by edges, and how many numbers there are.
+/// For each triangle the number of its connected component (union-find), and how many components there are.
 fn connected(welded: &Welded) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..welded.triangles.len() as u32).collect();
     for edge in 0..welded.edges.len() {

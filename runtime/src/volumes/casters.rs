@@ -1,12 +1,12 @@
-//! Casters: bodies put together so that each is worth a decision and a draw of its own.
+//! Casters: groups of bodies, each large enough to be worth a culling decision and a draw of its own.
 //!
-//! A caster's points, triangles and edges lie side by side, so that what a frame leaves out is a range that is not drawn.
+//! A caster's points, triangles and edges are contiguous, so that a frame leaves a caster out by skipping a range.
 //! Bodies of one instance stay together up to [`MOST_TRIANGLES`]; larger instances are cut along a Morton curve. A body
 //! that spans much of the scene, such as its ground, is a caster alone.
 
 use super::bodies::{Bodies, Shape, cross};
 use super::weld::{EdgeUse, Welded};
-use crate::sides::Sides;
+use crate::drawn_sides::DrawnSides;
 use crate::stage::Stage;
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -17,16 +17,16 @@ use sunbake::scene::Alpha;
 const MOST_TRIANGLES: usize = 1024;
 /// Share of the scene's size beyond which a body is a caster alone.
 const LARGE: f64 = 0.25;
-/// Distance from a caster's plane, as a share of its size, within which points count as lying on it: what rounding to `f32`
-/// moves them.
+/// Distance from a caster's plane within which points count as lying on it, as a share of the caster's size: as far as rounding to
+/// `f32` moves them.
 pub const FLAT: f64 = 3e-7;
 
-/// Everything that casts, welded and put in order.
+/// Everything that casts shadows, welded and sorted by caster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Casters {
     /// Points by caster, bake space.
     pub points_m: Vec<Vec3>,
-    /// Triangles by caster: points, counter-clockwise from the front, which of a solid is its outside.
+    /// Triangles by caster: points, counter-clockwise from the front. The front of a solid is its outside.
     pub triangles: Vec<[u32; 3]>,
     /// Edges by caster: points, lower first.
     pub edges: Vec<[u32; 2]>,
@@ -36,39 +36,39 @@ pub struct Casters {
     pub uses: Vec<EdgeUse>,
     /// The casters.
     pub all: Vec<Caster>,
-    /// What was found, counted.
+    /// Counts of what was found.
     pub counts: CasterCounts,
 }
 
-/// What is drawn or left out as one.
+/// A group of bodies that is drawn or left out as one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Caster {
-    /// Places in [`Casters::triangles`].
+    /// Indices in [`Casters::triangles`].
     pub triangles: Range<usize>,
-    /// Places in [`Casters::edges`].
+    /// Indices in [`Casters::edges`].
     pub edges: Range<usize>,
     /// Whether all of it bounds solids.
     pub is_solid: bool,
-    /// Whether next to none of its edges are shared: a heap of cards.
+    /// Whether few of its edges are shared, as in foliage made of cards.
     pub is_soup: bool,
-    /// Whether every front is drawn.
+    /// Whether the front of every triangle is drawn.
     pub shows_fronts: bool,
     /// Whether both sides of every triangle are drawn.
     pub shows_both_sides: bool,
-    /// Least and greatest coordinates.
+    /// Least and greatest coordinates, bake space.
     pub bounds_m: [DVec3; 2],
-    /// Unit normal and offset of the plane on which all of it lies, if there is one.
+    /// If it is flat: the unit normal of its plane, and the plane's offset along it in metres.
     pub plane: Option<(DVec3, f64)>,
 }
 
-/// What there is to cast shadows.
+/// Counts of what casts shadows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct CasterCounts {
     /// Triangles.
     pub triangles: usize,
     /// Of these, those that bound solids.
     pub solid_triangles: usize,
-    /// Of these, those with holes cut by alpha, whose whole cards cast.
+    /// Of these, those with an alpha mask. Their whole cards cast.
     pub cut_triangles: usize,
     /// Points after welding.
     pub points: usize,
@@ -82,16 +82,16 @@ pub struct CasterCounts {
     pub solid_bodies: usize,
     /// Bodies that bound solids inside out, and were turned over.
     pub turned_bodies: usize,
-    /// Bodies that do not.
+    /// Bodies that do not bound solids.
     pub open_bodies: usize,
     /// Casters.
     pub casters: usize,
-    /// Of these, heaps of cards that share next to no edges.
+    /// Of these, those that share few edges.
     pub soups: usize,
 }
 
 impl Casters {
-    /// Welds and sorts whatever casts on a stage.
+    /// Welds and sorts all casters of a stage.
     pub fn new(stage: &Stage) -> Self {
         let geometry = &stage.geometry;
         let flat: Vec<u32> =
@@ -115,7 +115,7 @@ impl Casters {
     }
 }
 
-/// Corners counter-clockwise from the front, in the order in which they are drawn: mirroring turns them over.
+/// Corners counter-clockwise from the front, in the order in which they are drawn. Mirrored instances are turned over.
 fn from_front(stage: &Stage, triangle: usize) -> [Vec3; 3] {
     let [a, b, c] = stage.geometry.triangles[triangle];
     match stage.scene.instances[stage.geometry.instance[triangle] as usize].is_mirrored {
@@ -124,7 +124,7 @@ fn from_front(stage: &Stage, triangle: usize) -> [Vec3; 3] {
     }
 }
 
-/// What decides where a body goes; in this order.
+/// The order of bodies: compared field by field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct OrderKey {
     instance: u32,
@@ -150,7 +150,7 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
         instance[body] = instance[body].min(stage.geometry.instance[flat[triangle] as usize]);
     }
     let half_m = stage.scene.half_extent_m.max_element().max(f64::MIN_POSITIVE);
-    let place = |body: usize| {
+    let key = |body: usize| {
         let [low, high] = bounds[body].map(|corner| corner.as_dvec3());
         let is_large = (high - low).max_element() > LARGE * 2.0 * half_m;
         OrderKey {
@@ -161,27 +161,27 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
             body: body as u32,
         }
     };
-    let mut places: Vec<OrderKey> = (0..count).map(place).collect();
-    places.sort_unstable();
+    let mut keys: Vec<OrderKey> = (0..count).map(key).collect();
+    keys.sort_unstable();
     let mut caster_of_body = vec![0; count];
-    let (mut caster, mut room) = (0, 0);
-    for (i, place) in places.iter().enumerate() {
-        let is_kin = |other: &OrderKey| {
-            (other.instance, other.is_open, other.alone) == (place.instance, place.is_open, place.alone)
+    let (mut caster, mut triangles_left) = (0, 0);
+    for (i, key) in keys.iter().enumerate() {
+        let is_together = |other: &OrderKey| {
+            (other.instance, other.is_open, other.alone) == (key.instance, key.is_open, key.alone)
         };
-        if i > 0 && (room == 0 || !is_kin(&places[i - 1])) {
+        if i > 0 && (triangles_left == 0 || !is_together(&keys[i - 1])) {
             caster += 1;
-            room = MOST_TRIANGLES;
+            triangles_left = MOST_TRIANGLES;
         } else if i == 0 {
-            room = MOST_TRIANGLES;
+            triangles_left = MOST_TRIANGLES;
         }
-        room = room.saturating_sub(sizes[place.body as usize]);
-        caster_of_body[place.body as usize] = caster;
+        triangles_left = triangles_left.saturating_sub(sizes[key.body as usize]);
+        caster_of_body[key.body as usize] = caster;
     }
     caster_of_body
 }
 
-/// OrderKey along a curve that keeps neighbours together, of a point in the unit cube.
+/// The Morton code of a point in the unit cube.
 fn morton(point: DVec3) -> u32 {
     let spread =
         |x: f64| (0..10).fold(0, |code, bit| code | ((x.clamp(0.0, 1.0) * 1023.0) as u32 >> bit & 1) << (3 * bit));
@@ -243,14 +243,14 @@ fn arrange(
     let mut new_point = vec![(u32::MAX, 0u32); welded.points_m.len()];
     for caster in 0..count as u32 {
         let (first, first_edge) = (next, next_edge);
-        let mut sides = Sides { front: true, back: true };
+        let mut sides = DrawnSides { front: true, back: true };
         let mut is_solid = true;
         while next < order.len() && caster_of(order[next] as usize) == caster {
             let old = order[next] as usize;
             let shape = bodies.shapes[bodies.of_triangle[old] as usize];
-            // Through a hole one sees past the cap.
+            // An alpha mask shows what lies behind the cap.
             let drawn = if has_alpha_mask(stage, flat[old] as usize) {
-                Sides::default()
+                DrawnSides::default()
             } else {
                 stage.sides(flat[old] as usize)
             };
@@ -271,7 +271,7 @@ fn arrange(
             push_edge(old, welded, &new_point, &new_triangle, bodies, &mut casters);
             next_edge += 1;
         }
-        let (bounds_m, plane) = place(&casters, first..next);
+        let (bounds_m, plane) = bounds_and_plane(&casters, first..next);
         casters.all.push(Caster {
             triangles: first..next,
             edges: first_edge..next_edge,
@@ -315,7 +315,7 @@ fn push_edge(
     }
 }
 
-/// Whether a triangle's material cuts holes.
+/// Whether a triangle's material has an alpha mask.
 fn has_alpha_mask(stage: &Stage, triangle: usize) -> bool {
     matches!(stage.material(triangle).alpha, Alpha::Mask { .. })
 }
@@ -328,7 +328,7 @@ fn is_soup(casters: &Casters, edges: Range<usize>) -> bool {
 }
 
 /// Bounds of a caster's triangles, and the plane on which they lie.
-fn place(casters: &Casters, triangles: Range<usize>) -> ([DVec3; 2], Option<(DVec3, f64)>) {
+fn bounds_and_plane(casters: &Casters, triangles: Range<usize>) -> ([DVec3; 2], Option<(DVec3, f64)>) {
     let corners = || triangles.clone().map(|triangle| casters.corners_m(triangle));
     let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let mut widest = DVec3::ZERO;

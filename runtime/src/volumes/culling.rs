@@ -1,14 +1,14 @@
-//! What a frame need not draw: decided on the CPU, for whole casters, never wrong about a pixel. (But for those whose surface
-//! lies within a hair of a flat caster's plane, from below: volumes are moved from the eye by as much, and what leaves them out
-//! is right where they are not.)
+//! What a frame need not draw. This is decided on the CPU, for whole casters, and does not change any pixel. (One exception: surfaces just
+//! below a flat caster's plane. Volumes are moved away from the eye by a small distance, and leaving such a volume out is right where
+//! drawing it would be wrong.)
 //!
 //! * A volume that misses the view.
-//! * A volume that holds no surface which is in view: a ground under which there is nothing, say.
-//! * Caps that are out of view, and dark caps that are.
-//! * Pixels in which no surface can be: a scissor rectangle. wgpu has no test of depth bounds.
+//! * A volume that contains no surface in view, such as that of a ground with nothing under it.
+//! * Caps that are out of view, and dark caps that are out of view.
+//! * Pixels that show no surface: a scissor rectangle. wgpu has no depth bounds test.
 //!
-//! And what a caster may be spared: caps and all, where the eye is surely outside of its volume. That is so where the
-//! caster does not reach into the *occlusion pyramid*, the hull of the view's near rectangle and the light.
+//! A caster can also do without caps (z-pass) where the eye is surely outside of its volume. That is so where the caster does not reach
+//! into the *occlusion pyramid*, the convex hull of the view's near rectangle and the light.
 
 use super::casters::{Caster, Casters, FLAT};
 use super::light::Light;
@@ -19,12 +19,12 @@ use glam::DVec3;
 /// A box with least and greatest coordinates, bake space.
 pub type Aabb = [DVec3; 2];
 
-/// How much wider than the near rectangle its pyramid is taken to be: what a frame's own rounding can move.
+/// How much wider than the near rectangle the pyramid is made, to allow for rounding.
 const PYRAMID_MARGIN: f64 = 4.0;
 
-/// How far a face may be moved across the line of sight, in pixels: by its bias, and as far again by rounding to the raster.
+/// How far a face may be moved across the line of sight, in pixels: by its bias, and as much again by rounding to the raster.
 const MOVED_PX: f64 = 1.0 / 64.0;
-/// How far it may be moved along it besides, as a share of its distance.
+/// How far it may also be moved along the line of sight, as a share of its distance.
 const MOVED_DEPTH: f64 = 4e-6;
 
 fn corners(bounds: &Aabb) -> [DVec3; 8] {
@@ -32,7 +32,7 @@ fn corners(bounds: &Aabb) -> [DVec3; 8] {
     std::array::from_fn(|i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
 }
 
-/// What a camera sees.
+/// The space that a camera sees.
 #[derive(Debug, Clone)]
 pub struct Frustum {
     eye_m: DVec3,
@@ -47,7 +47,7 @@ pub struct Frustum {
 }
 
 impl Frustum {
-    /// Of a view.
+    /// The frustum of a view.
     pub fn new(view: &View) -> Self {
         let [width, height] = view.size.map(f64::from);
         let (right, down) = (view.ray_per_column.as_dvec3() * width, view.ray_per_row.as_dvec3() * height);
@@ -76,7 +76,7 @@ impl Frustum {
         self.outwards.iter().any(|normal| corners.iter().all(|c| (*c - self.eye_m).dot(*normal) > 0.0))
     }
 
-    /// Whether no part of what a box and its shadow fill is in view.
+    /// Whether no part of a box and its shadow is in view.
     pub fn misses_volume(&self, bounds: &Aabb, light: &Light) -> bool {
         let corners = corners(bounds);
         self.outwards.iter().any(|normal| {
@@ -85,7 +85,7 @@ impl Frustum {
         })
     }
 
-    /// Whether no part of the far end of a lamp's shadow is in view. An end that is not at infinity is never said to miss.
+    /// Whether no part of the far end of a lamp's shadow is in view. False for a shadow that does not end at infinity.
     pub fn misses_far_end(&self, bounds: &Aabb, light: &Light) -> bool {
         if light.has_range() {
             return false;
@@ -148,7 +148,7 @@ impl Frustum {
     }
 }
 
-/// Whether a shadow goes nowhere but to the side on which a normal points.
+/// Whether a shadow extends only to the side to which a normal points.
 fn goes_along(corners: &[DVec3; 8], light: &Light, normal: DVec3) -> bool {
     match light {
         Light::Sun { towards } => towards.dot(normal) <= 0.0,
@@ -156,14 +156,14 @@ fn goes_along(corners: &[DVec3; 8], light: &Light, normal: DVec3) -> bool {
     }
 }
 
-/// Boxes around what is drawn, an instance each.
+/// Bounding boxes of drawn instances.
 #[derive(Debug, Clone)]
 pub struct Receivers {
     bounds: Vec<Aabb>,
 }
 
 impl Receivers {
-    /// Of a stage.
+    /// The boxes of a stage.
     pub fn new(stage: &Stage) -> Self {
         let of_instance = |window: &[u32]| {
             let drawn = (window[0] as usize..window[1] as usize).filter(|&t| !stage.sides(t).is_none());
@@ -176,14 +176,14 @@ impl Receivers {
         Self { bounds: all.filter(|[low, _]| low.is_finite()).collect() }
     }
 
-    /// Those that are in view and in the light's range.
+    /// The boxes that are in view and in the light's range.
     pub fn in_view(&self, frustum: &Frustum, light: &Light) -> Vec<Aabb> {
         let in_range = |bounds: &&Aabb| range_box(light).is_none_or(|range| overlap(&range, bounds));
         self.bounds.iter().filter(|bounds| !frustum.misses(bounds)).filter(in_range).copied().collect()
     }
 }
 
-/// The box around all that a light reaches, if it has a range.
+/// The box around a light's range, if it has one.
 fn range_box(light: &Light) -> Option<Aabb> {
     match light {
         Light::Lamp { position_m, range_m: Some(range_m) } => Some([*position_m - *range_m, *position_m + *range_m]),
@@ -191,7 +191,7 @@ fn range_box(light: &Light) -> Option<Aabb> {
     }
 }
 
-/// Whether a caster is where a light reaches.
+/// Whether a caster is in a light's range.
 pub fn is_in_range(bounds: &Aabb, light: &Light) -> bool {
     range_box(light).is_none_or(|range| overlap(&range, bounds))
 }
@@ -200,40 +200,40 @@ fn overlap(a: &Aabb, b: &Aabb) -> bool {
     a[0].cmple(b[1]).all() && b[0].cmple(a[1]).all()
 }
 
-/// Receivers as a light sees them: which of them a caster's shadow can fall on.
+/// Receivers in a light's frame, to find which of them a caster's shadow can fall on.
 pub struct Targets {
     /// In bake space.
     bounds: Vec<Aabb>,
-    /// Along two axes across the sun's rays, and along them towards the sun. Empty for lamps.
-    seen: Vec<Aabb>,
+    /// The same boxes in the sun's frame: two axes across its rays, and one towards the sun. Empty for lamps.
+    in_light_frame: Vec<Aabb>,
 }
 
 impl Targets {
-    /// Receivers in view, as a light sees them.
+    /// Puts receivers in view into a light's frame.
     pub fn new(bounds: Vec<Aabb>, frustum: &Frustum, light: &Light) -> Self {
-        let seen = match light {
+        let in_light_frame = match light {
             Light::Sun { towards } => {
                 let grown = |bounds: &Aabb| {
                     let furthest_m = corners(bounds).map(|c| c.distance(frustum.eye_m)).into_iter().fold(0.0, f64::max);
                     let growth_m = frustum.moved_share * furthest_m;
-                    seen_from_sun(&[bounds[0] - growth_m, bounds[1] + growth_m], *towards)
+                    in_sun_frame(&[bounds[0] - growth_m, bounds[1] + growth_m], *towards)
                 };
                 bounds.iter().map(grown).collect()
             }
             Light::Lamp { .. } => Vec::new(),
         };
-        Self { bounds, seen }
+        Self { bounds, in_light_frame }
     }
 
-    /// Whether a caster's shadow can fall on any.
+    /// Whether a caster's shadow can fall on any of them.
     pub fn any_behind(&self, caster: &Caster, light: &Light) -> bool {
         let own = match light {
-            Light::Sun { towards } => Some(seen_from_sun(&caster.bounds_m, *towards)),
+            Light::Sun { towards } => Some(in_sun_frame(&caster.bounds_m, *towards)),
             Light::Lamp { .. } => None,
         };
         (0..self.bounds.len()).any(|i| {
             let is_across = own.as_ref().is_none_or(|[low, high]| {
-                let [target_low, target_high] = &self.seen[i];
+                let [target_low, target_high] = &self.in_light_frame[i];
                 let overlaps = |k: usize| target_low[k] <= high[k] && low[k] <= target_high[k];
                 overlaps(0) && overlaps(1) && target_low.z <= high.z
             });
@@ -241,7 +241,7 @@ impl Targets {
         })
     }
 
-    /// The pixels that surfaces in the light's reach can cover: left, top, width, height.
+    /// The pixels that surfaces in the light's range can cover: left, top, width, height.
     pub fn pixels(&self, frustum: &Frustum, view: &View, light: &Light) -> [u32; 4] {
         let union = |a: [u32; 4], b: [u32; 4]| {
             let start = [a[0].min(b[0]), a[1].min(b[1])];
@@ -261,8 +261,8 @@ impl Targets {
     }
 }
 
-/// A box as the sun sees it, and grown by what its own rounding may have taken.
-fn seen_from_sun(bounds: &Aabb, towards: DVec3) -> Aabb {
+/// A box in the sun's frame, grown to allow for rounding.
+fn in_sun_frame(bounds: &Aabb, towards: DVec3) -> Aabb {
     let (right, up) = towards.any_orthonormal_pair();
     let seen = corners(bounds).map(|c| DVec3::new(c.dot(right), c.dot(up), c.dot(towards)));
     let (low, high) = (seen.iter().fold(seen[0], |a, b| a.min(*b)), seen.iter().fold(seen[0], |a, b| a.max(*b)));
@@ -270,7 +270,7 @@ fn seen_from_sun(bounds: &Aabb, towards: DVec3) -> Aabb {
     [low - growth_m, high + growth_m]
 }
 
-/// Whether a box lies on or before the plane of a flat caster, on the light's side, where it extrudes no shadow.
+/// Whether a box lies on the plane of a flat caster or on the light's side of it, where the caster casts no shadow.
 fn is_before_plane(caster: &Caster, bounds: &Aabb, light: &Light) -> bool {
     let Some((normal, offset_m)) = caster.plane else { return false };
     let side = match light {

@@ -1,5 +1,5 @@
-//! Which way each caster's triangles face the light: decided once for each triangle, in `f64`, and shared by its edges and
-//! caps, so that no rounding can open a volume.
+//! Which triangles face the light. That is decided once for each triangle, in `f64`, and used by its edges and caps alike, so that
+//! rounding cannot open a volume.
 
 use super::bodies::cross;
 use super::casters::{Caster, Casters};
@@ -10,39 +10,38 @@ use rayon::prelude::*;
 /// A light without size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {
-    /// So far away that its rays are parallel.
+    /// Infinitely far away: its rays are parallel.
     Sun {
         /// Unit vector towards it.
         towards: DVec3,
     },
     /// A point in the scene.
     Lamp {
-        /// Where it is, bake space.
+        /// Its position in bake space, in metres.
         position_m: DVec3,
-        /// How far its light goes; without end where none.
+        /// Distance beyond which it gives no light, in metres. None: infinite.
         range_m: Option<f64>,
     },
 }
 
-/// What a light makes of the casters' triangles.
+/// Which of the casters' triangles face a light.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Faces {
     /// For each triangle, how its prism counts: 1 where its front faces the light and casts, -1 where its back does and
     /// casts, 0 where it casts nothing.
     pub of_triangle: Vec<i8>,
-    /// For each caster, whether its front faces alone shade all that it does: it bounds solids, and the light is in none of
-    /// them.
+    /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside none of them.
     pub is_solid: Vec<bool>,
 }
 
-/// How near a lamp may come to a triangle before rounding hides on which side of it it is, in steps of the largest coordinate.
+/// Distance from a triangle below which rounding hides on which side of it a lamp is, in `f32` steps of the largest coordinate.
 const TOUCH_STEPS: f64 = 8.0;
 /// A step of an `f32`, as a share of its value.
 const STEP: f64 = 1.0 / (1 << 23) as f64;
 
 impl Light {
-    /// How far a triangle turns its front to the light: above zero for fronts, zero for those seen edge on. A lamp that is
-    /// nearer to a triangle's plane than its place can be told is in it.
+    /// Above zero where a triangle's front faces the light, below zero where its back does, zero where it is edge on. A lamp that is
+    /// nearer to the triangle's plane than rounding counts as being in it.
     fn front(&self, corners: &[DVec3; 3]) -> f64 {
         let normal = cross(corners);
         match self {
@@ -54,7 +53,7 @@ impl Light {
         }
     }
 
-    /// Whether the light ends somewhere.
+    /// Whether the light has a finite range.
     pub fn has_range(&self) -> bool {
         matches!(self, Self::Lamp { range_m: Some(_), .. })
     }
@@ -67,8 +66,8 @@ impl Light {
             }
     }
 
-    /// What the light makes of the triangles. Backs of solids cast nothing that fronts do not, and are left out where
-    /// `spares` says so; what is edge on has no prism.
+    /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; `spares` leaves them out.
+    /// Triangles that are edge on have no prism.
     pub fn faces(&self, casters: &Casters, spares: bool) -> Faces {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
         let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
@@ -82,21 +81,21 @@ impl Light {
     }
 }
 
-/// How near two places may be and still be one.
+/// Distance below which two points count as one.
 fn touch_m(a: DVec3, b: DVec3) -> f64 {
     TOUCH_STEPS * STEP * a.abs().max(b.abs()).max_element()
 }
 
-/// Directions of which a ray through modelled things should meet no edge, to all sides.
-const WAYS: [DVec3; 4] = [
+/// Directions to all sides, so irregular that rays through typical models hit no edges.
+const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(0.532_1, 0.717_3, 0.449_7),
     DVec3::new(-0.671_9, 0.288_3, -0.682_3),
     DVec3::new(0.193_7, -0.871_1, 0.451_3),
     DVec3::new(-0.247_1, -0.183_9, 0.951_4),
 ];
 
-/// Whether a point may be inside one of a caster's bodies, or on one: some ray from it leaves more often than it enters, or a
-/// triangle is too near to say.
+/// Whether a point may be inside one of a caster's bodies, or on its surface: some ray from it leaves more often than it enters, or a
+/// triangle is too near to decide.
 fn is_inside(casters: &Casters, caster: &Caster, point_m: DVec3) -> bool {
     let [low, high] = caster.bounds_m;
     let reach_m = touch_m(point_m, low.abs().max(high.abs()));
@@ -107,7 +106,7 @@ fn is_inside(casters: &Casters, caster: &Caster, point_m: DVec3) -> bool {
     let winding = |way: &DVec3| -> i32 {
         caster.triangles.clone().map(|triangle| crossing(&casters.corners_m(triangle), point_m, *way)).sum()
     };
-    caster.triangles.clone().any(touches) || WAYS.iter().any(|way| winding(way) != 0)
+    caster.triangles.clone().any(touches) || DIRECTIONS.iter().any(|way| winding(way) != 0)
 }
 
 /// +1 where a ray leaves through a triangle's front, -1 where it enters, 0 where it misses.

@@ -1,26 +1,25 @@
-//! Shadow volumes: what a light's casters shade, as closed bodies whose faces are counted in a stencil (Crow, "Shadow
+//! Shadow volumes: the space that casters shade, as closed bodies whose faces are counted in a stencil buffer (Crow, "Shadow
 //! algorithms for computer graphics", SIGGRAPH 1977; McGuire, "Efficient shadow volume rendering", *GPU Gems* chapter 9).
 //!
-//! Everything here is geometry on the CPU; the passes are in [`crate::gpu`]. It reads in this order:
+//! This module is geometry on the CPU; the passes are in [`crate::gpu`]. Read it in this order:
 //!
 //! ```text
-//! weld      corners at one place become one point, with edges
-//! bodies    which triangles hang together, and which of them bound solids
-//! casters   bodies put together and in order: once per stage
+//! weld      corners with equal coordinates become one point, with edges
+//! bodies    connected triangles, and which of them bound solids
+//! casters   bodies, grouped and sorted: once per stage
 //! light     which triangles face the light                       } once per
 //! silhouettes   walls and caps, as indices                       } light
-//! overlap   how many may count at one pixel                      }
+//! overlap   how many volumes may overlap at one pixel            }
 //! culling, plan     what to draw of each caster, and how: once per view
 //! ```
 //!
-//! **Why it is right.** Each triangle that blocks light shades a prism. A volume is a sum of prisms, less walls that cancel
-//! because they are the same triangle turned over; so it is closed, whatever the mesh is like, and the count at a
-//! pixel is the number of prisms that hold its surface. Solids leave out prisms that shade nothing new. One thing is added:
-//! every face is moved away from the eye by a little more than rasterising can misplace it, so that surfaces do not shade
-//! themselves, nor those on which they lie.
+//! **Why it is right.** Each triangle that blocks light shades a prism. A volume is a sum of prisms, without the walls that cancel
+//! because two prisms share them with opposite signs. So it is closed for any mesh, and the count at a pixel is the number of prisms
+//! that contain its surface. Solids leave out prisms that shade nothing new. One thing is added: every face is moved away from the eye
+//! by a little more than rasterising can misplace it, so that surfaces do not shade themselves, nor the surfaces on which they lie.
 //!
-//! **What it does not do.** Holes cut by alpha are not seen: a leaf casts its whole card. Lights have no size: soft edges
-//! take many lights.
+//! **What it does not do.** Alpha masks are ignored: a leaf casts the shadow of its whole card. Lights have no size: soft edges take
+//! many lights.
 
 pub mod bodies;
 pub mod casters;
@@ -42,14 +41,14 @@ use std::fmt;
 /// How volumes are made and counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
-    /// Each caster as suits it: silhouettes from the CPU, before the surface where that is right, else behind it.
+    /// Silhouettes from the CPU; each caster is counted in front of the surface (z-pass) where that is right, else behind it (z-fail).
     #[default]
     Planned,
-    /// Silhouettes from the CPU, all behind the surface.
+    /// Silhouettes from the CPU, all counted behind the surface.
     ZFail,
-    /// Silhouettes from the CPU, before the surface wherever that is right.
+    /// Silhouettes from the CPU, counted in front of the surface wherever that is right.
     ZPass,
-    /// Each triangle's own prism, behind the surface.
+    /// A prism for each triangle, counted behind the surface.
     Triangles,
     /// Silhouettes found by the vertex shader.
     Gpu,
@@ -72,7 +71,7 @@ impl fmt::Display for Mode {
     }
 }
 
-/// What may be left out of a frame without changing it. All on, unless something is to be measured.
+/// Work that a frame leaves out without changing the picture. All are on by default; measurements turn some off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Savings {
     /// Casters whose volumes miss the view.
@@ -118,7 +117,7 @@ impl Savings {
     };
 }
 
-/// As many prisms as the eight bits of a stencil count.
+/// Most overlapping prisms that the eight bits of a stencil buffer can count.
 pub const MOST_COUNTED: usize = 255;
-/// As many as seven bits count, where the eighth remembers what earlier runs found.
+/// Most that seven bits can count, where the eighth keeps the result of earlier runs.
 pub const MOST_COUNTED_BY_RUN: usize = 127;

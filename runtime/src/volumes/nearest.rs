@@ -1,8 +1,8 @@
-//! The place of a triangle that is nearest to a point.
+//! The point of a triangle that is nearest to another point.
 
 use glam::DVec3;
 
-/// Weights of a triangle's second and third corner at the place that is nearest to a point (Ericson, *Real-Time Collision
+/// Barycentric weights of a triangle's second and third corner at its point nearest to `point` (Ericson, *Real-Time Collision
 /// Detection*, 5.1.5).
 pub fn nearest(&[a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 2] {
     let (ab, ac) = (b - a, c - a);
@@ -28,7 +28,7 @@ pub fn nearest(&[a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 2] {
     }
 }
 
-/// Distance from a point to a triangle.
+/// Distance from a point to a triangle, in metres.
 pub fn distance_m(corners: &[DVec3; 3], from_m: DVec3) -> f64 {
     let [u, v] = nearest(corners, from_m);
     let [a, b, c] = corners;
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_place_is_a_corner_on_an_edge_or_within() {
+    fn the_nearest_point_is_a_corner_on_an_edge_or_within() {
         let corners = [DVec3::ZERO, DVec3::X * 2.0, DVec3::Y * 2.0];
         let cases = [
             (DVec3::new(-1.0, -1.0, 0.0), [0.0, 0.0], 2f64.sqrt()),

@@ -1,9 +1,9 @@
-//! How many prisms may hold one point: eight bits of stencil count to 255, and 256 reads as lit.
+//! How many prisms may contain one point. Eight bits of stencil count to 255, and 256 would read as lit.
 //!
-//! Prisms are seen from the light, where each is its triangle, and what lies over one spot bounds what any pixel can count.
-//! The space of spots is cut in two until those triangles that reach into a cell are few enough, or the cell so small
-//! that cutting does not tell them apart. The sun's view is a plane. A lamp's is the sphere around it, cut as a cube: there a
-//! triangle is a cone of three planes through the lamp. What is counted may be too many, and never too few.
+//! Seen from the light, a prism is its triangle, and the number of triangles at one spot bounds the count at any pixel. The light's view
+//! is cut in two, again and again, until few enough triangles reach into a cell, or the cell is so small that more cuts do not separate
+//! them. The sun's view is a plane. A lamp's view is the sphere around it, cut as a cube, where a triangle is a cone of three planes
+//! through the lamp. The bound may be too high, never too low.
 
 use super::casters::Casters;
 use super::light::Light;
@@ -11,25 +11,25 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Cuts after which what still overlaps is taken to.
+/// Cuts after which triangles in one cell count as overlapping.
 const DEEPEST: u32 = 48;
-/// Triangles by which a median is told.
+/// How many triangles a median is estimated from.
 const SAMPLE: usize = 63;
-/// By how much everything is grown: more than rounding to `f32` can shrink it, for places between -1 and 1.
+/// By how much boxes are grown to allow for rounding to `f32`, for coordinates between -1 and 1.
 const GROWTH: f32 = 2e-6;
 
 /// A box with least and greatest coordinates.
 type CellBounds = [Vec3; 2];
 
-/// All triangles as the light sees them.
-struct Seen {
+/// All triangles in the light's view.
+struct TrianglesInLightView {
     view: LightView,
     corners: Vec<[Vec3; 3]>,
-    /// Boxes; empty where a triangle casts nothing.
+    /// Bounding boxes; empty where a triangle casts nothing.
     bounds: Vec<CellBounds>,
 }
 
-/// Cuts the casting triangles into as few runs as it easily can, none of which has more than `most` prisms over one spot.
+/// Cuts the casting triangles into a few runs, none of which has more than `most` prisms at one spot.
 pub fn runs(casters: &Casters, faces: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
     let casting = faces.iter().filter(|&&face| face != 0).count();
     if casting <= most {
@@ -38,15 +38,15 @@ pub fn runs(casters: &Casters, faces: &[i8], light: &Light, most: usize) -> Vec<
     let view = LightView::new(casters, light);
     let seen = |triangle: usize| match faces[triangle] {
         0 => ([Vec3::ZERO; 3], [Vec3::INFINITY, Vec3::NEG_INFINITY]),
-        _ => view.see(&casters.corners_m(triangle)),
+        _ => view.project(&casters.corners_m(triangle)),
     };
     let (corners, bounds) = (0..faces.len()).into_par_iter().map(seen).unzip();
     let mut found = Vec::new();
-    Seen { view, corners, bounds }.cut(0..faces.len(), most, &mut found);
+    TrianglesInLightView { view, corners, bounds }.cut(0..faces.len(), most, &mut found);
     found
 }
 
-impl Seen {
+impl TrianglesInLightView {
     fn cut(&self, run: Range<usize>, most: usize, found: &mut Vec<Range<usize>>) {
         let casting: Vec<u32> = run.clone().filter(|&i| self.bounds[i][0].x.is_finite()).map(|i| i as u32).collect();
         if casting.len() <= most || !self.exceeds(&casting, self.view.space(), most, 0) {
@@ -57,8 +57,8 @@ impl Seen {
         self.cut(middle..run.end, most, found);
     }
 
-    /// Where to cut a cell: at the median of the middles of what reaches into it, as far as it does, by a sample. Where a scene
-    /// is dense cells are small, and a wide plain costs no cuts.
+    /// Where to cut a cell: at the median of the middles of the triangles' parts in it, estimated from a sample. Cells become small where a
+    /// scene is dense, and a wide plain costs no cuts.
     fn middle(&self, of: &[u32], cell: &CellBounds, axis: usize) -> f32 {
         let middle = |&i: &u32| {
             let [low, high] = &self.bounds[i as usize];
@@ -69,8 +69,8 @@ impl Seen {
         *sample.select_nth_unstable_by(half, f32::total_cmp).1
     }
 
-    /// Whether more than `most` of these triangles, all of which reach into a cell, may reach into some part of it as small
-    /// as cells get.
+    /// Whether more than `most` of these triangles, all of which reach into a cell, may share a part of it that is as small as cells
+    /// get.
     fn exceeds(&self, of: &[u32], cell: CellBounds, most: usize, depth: u32) -> bool {
         if of.len() <= most || !self.view.has_spots_in(&cell) {
             return false;
@@ -87,14 +87,14 @@ impl Seen {
             let is_kept = |&i: &u32| {
                 let [low, high] = &self.bounds[i as usize];
                 let overlaps = if is_upper { high[axis] >= middle } else { low[axis] <= middle };
-                // Of what is small beside the cell, its box tells enough.
+                // For a triangle much smaller than the cell the box is exact enough.
                 let is_small = || (*high - *low).max_element() < 0.5 * size;
                 overlaps && (is_small() || self.view.reaches(&self.corners[i as usize], &half))
             };
             let kept: Vec<u32> = of.iter().copied().filter(is_kept).collect();
             self.exceeds(&kept, half, most, depth + 1)
         };
-        // Wide calls are worth a thread each, the many small ones are not.
+        // Calls with many triangles are worth a thread each.
         match of.len() > 2048 {
             true => {
                 let (lower, upper) = rayon::join(|| half(false), || half(true));
@@ -105,7 +105,7 @@ impl Seen {
     }
 }
 
-/// What the light sees, in coordinates between -1 and 1.
+/// The light's view, in coordinates between -1 and 1.
 enum LightView {
     /// Across the sun's rays.
     Plane { across: [DVec3; 2], middle_m: DVec3, per_metre: f64 },
@@ -129,7 +129,7 @@ impl LightView {
         }
     }
 
-    /// All that is seen. A plane has no depth to be halved.
+    /// The whole view. A plane has no depth to be halved.
     fn space(&self) -> CellBounds {
         let half = match self {
             Self::Plane { .. } => Vec3::new(2.0, 2.0, 0.0),
@@ -138,7 +138,7 @@ impl LightView {
         [-half, half]
     }
 
-    /// Whether a cell holds anything that is seen: of the cube around a lamp, only the sphere.
+    /// Whether a cell holds a part of the view: of the cube around a lamp, only the sphere counts.
     fn has_spots_in(&self, [low, high]: &CellBounds) -> bool {
         match self {
             Self::Plane { .. } => true,
@@ -150,8 +150,8 @@ impl LightView {
         }
     }
 
-    /// A triangle, and its box.
-    fn see(&self, corners: &[DVec3; 3]) -> ([Vec3; 3], CellBounds) {
+    /// A triangle in the view, and its box.
+    fn project(&self, corners: &[DVec3; 3]) -> ([Vec3; 3], CellBounds) {
         match self {
             Self::Plane { across, middle_m, per_metre } => {
                 let seen = corners.map(|corner| {
@@ -163,7 +163,7 @@ impl LightView {
             }
             Self::Sphere { centre_m } => {
                 // A spherical triangle lies within the cap around its middle that holds its corners. Beyond a hemisphere the
-                // cap may be the wrong way round, and is taken to be everything.
+                // cap may be the wrong one, and the whole sphere is taken.
                 let seen = corners.map(|corner| (corner - centre_m).normalize_or_zero());
                 let middle = (seen[0] + seen[1] + seen[2]).normalize_or_zero();
                 let reach = seen.iter().map(|s| s.distance(middle)).fold(0.0, f64::max);

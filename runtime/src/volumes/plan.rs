@@ -1,4 +1,4 @@
-//! What is drawn of each caster, and why: decided anew for each view, from what the light makes of the scene.
+//! What is drawn of each caster. This is decided anew for each view.
 
 use super::casters::Casters;
 use super::culling::{Frustum, Receivers, Targets, is_in_range};
@@ -13,23 +13,23 @@ use std::ops::Range;
 /// How a caster's volume is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StencilMethod {
-    /// Faces before the surface, without the casters' own caps: cheaper, and wrong where the eye is in the volume or such a
-    /// cap shows.
+    /// Faces in front of the surface, without caps at the caster. Cheaper, and wrong where the eye is in the volume or such a cap is
+    /// visible.
     ZPass {
-        /// With the caps at the far end: needed where that is not at infinity, and one may look in through it.
+        /// Whether caps at the far end are drawn: needed where that is not at infinity.
         dark_caps: bool,
     },
     /// Faces behind the surface: always right.
     ZFail {
-        /// With the caps at the casters.
+        /// Whether caps at the caster are drawn.
         caps: bool,
-        /// With the caps at infinity.
+        /// Whether caps at infinity are drawn.
         dark_caps: bool,
     },
 }
 
 impl StencilMethod {
-    /// Whether it takes a part of the volume.
+    /// Whether a part of the volume is drawn.
     fn has(self, part: Part) -> bool {
         match (self, part) {
             (_, Part::Walls) => true,
@@ -44,15 +44,15 @@ impl StencilMethod {
 /// What a frame draws of one light's volumes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FramePlan {
-    /// For each caster, how; none where it is left out.
+    /// How each caster is drawn. None: it is left out.
     pub draws: Vec<Option<StencilMethod>>,
     /// Pixels outside of which nothing is drawn: left, top, width, height.
     pub scissor: [u32; 4],
-    /// What was decided, counted.
+    /// Counts of what was decided.
     pub counts: PlanCounts,
 }
 
-/// What was decided, counted.
+/// Counts of what was decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct PlanCounts {
     /// Casters.
@@ -61,20 +61,20 @@ pub struct PlanCounts {
     pub casting_nothing: usize,
     /// Left out: their volumes miss the view.
     pub out_of_view: usize,
-    /// Left out: their volumes hold no surface that is in view.
+    /// Left out: their volumes contain no surface in view.
     pub shading_nothing: usize,
-    /// Counted before the surface.
+    /// Counted in front of the surface.
     pub z_pass: usize,
-    /// Counted behind it.
+    /// Counted behind the surface.
     pub z_fail: usize,
-    /// Of those behind it, without caps, which are out of view.
+    /// Of those behind the surface, drawn without caps, which are out of view.
     pub without_caps: usize,
-    /// Of those behind it, those for which z-pass was asked, and would have been wrong.
+    /// Of those behind the surface, those for which z-pass was asked for and would be wrong.
     pub replaced: usize,
 }
 
 impl FramePlan {
-    /// Decides. `faces` are of all runs together.
+    /// Decides for all casters. `faces` are those of all runs.
     pub fn new(
         casters: &Casters,
         receivers: &Receivers,
@@ -113,7 +113,8 @@ impl FramePlan {
         Self { draws: chosen.iter().map(draw).collect(), scissor, counts }
     }
 
-    /// Places of some parts of casters that are counted before the surface or behind it; neighbours joined.
+    /// Index ranges of some parts of casters that are counted in front of the surface, or of those counted behind it. Adjacent ranges are
+    /// joined.
     pub fn ranges(
         &self,
         all: &[Parts],
@@ -148,7 +149,7 @@ enum Choice {
     CastingNothing,
     OutOfView,
     ShadingNothing,
-    /// And whether z-pass was asked for in vain.
+    /// The flag says that z-pass was asked for and would be wrong.
     Drawn(StencilMethod, bool),
 }
 
@@ -180,7 +181,7 @@ impl Chooser<'_> {
             Mode::ZFail | Mode::Triangles => false,
             Mode::Planned | Mode::Gpu => self.savings.z_pass,
         };
-        if wants_z_pass && self.is_right_before(index) {
+        if wants_z_pass && self.allows_z_pass(index) {
             return Choice::Drawn(StencilMethod::ZPass { dark_caps: self.light.has_range() }, false);
         }
         let caps = !self.savings.cap_culling || !self.frustum.misses(&caster.bounds_m);
@@ -188,9 +189,9 @@ impl Chooser<'_> {
         Choice::Drawn(StencilMethod::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
     }
 
-    /// Whether a caster may be counted before the surface without its caps: every cap is hidden by the surface that it lies
-    /// on, and the eye is outside of the volume.
-    fn is_right_before(&self, index: usize) -> bool {
+    /// Whether a caster may be counted in front of the surface without its caps: every cap is hidden by the surface that it lies on, and
+    /// the eye is outside of the volume.
+    fn allows_z_pass(&self, index: usize) -> bool {
         let caster = &self.casters.all[index];
         let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.faces.is_solid[index]);
         hides_caps && !self.frustum.may_be_shaded_by(self.casters, caster, &self.faces.of_triangle, self.light)

@@ -1,15 +1,15 @@
-//! Volumes from casters: the boundary of the prisms that the light extrudes from triangles.
+//! Volumes of casters: the boundary of the prisms that are extruded from triangles away from the light.
 //!
-//! A triangle that blocks the light shades a prism without end: the triangle is its *cap*, and from each of its edges a
-//! *wall* leads away from the light. Where two prisms meet in a wall, one says +1 and the other -1, and the wall is not
-//! there. So what has to be drawn is each edge times the sum of what its triangles say: nothing within a lit patch, once
-//! around it, twice where two triangles that face the light from either side meet. Faces are signed, and counting them
-//! along a line of sight counts the prisms that hold its end, for any triangles whatever (after Bergeron, "A general version
+//! A triangle that blocks the light shades an infinite prism. The triangle is its *cap*, and from each of its edges a *wall* leads away
+//! from the light. Where two prisms share a wall, one counts it +1 and the other -1, and it cancels. So each edge's wall is drawn as
+//! often as the sum over its triangles says: not at all inside a lit patch, once around it, twice where a triangle that faces the light
+//! meets one that faces away. Faces are signed, and counting them along a line of sight counts the prisms that contain its end, for any
+//! triangles (after Bergeron, "A general version
 //! of Crow's shadow volumes", *IEEE CG&A* 6(9), 1986, and Kim, Kim and Turk, "A shadow-volume algorithm for opaque and
 //! transparent nonmanifold casters", *Journal of Graphics Tools* 13(3), 2008).
 //!
-//! The sun's rays meet in one point at infinity, so its walls are single triangles and there is nothing to close them
-//! with. A lamp's are quads, and end in *dark caps*.
+//! The sun's rays meet in one point at infinity, so its walls are single triangles and need no far cap. A lamp's walls are quads, and end
+//! in *dark caps*.
 //!
 //! Corners are indices: below the number of points, a point; from there on, for the sun, the point where its rays meet,
 //! and for a lamp each point extruded away from it.
@@ -18,12 +18,12 @@ use super::casters::{Caster, Casters};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What is extruded from an edge.
+/// The shape of walls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extrusion {
-    /// Walls that meet in a point.
+    /// Walls of the sun, which meet in a point at infinity.
     ToPoint,
-    /// Walls that spread.
+    /// Walls of a lamp, which spread.
     Spread,
 }
 
@@ -42,11 +42,11 @@ impl Extrusion {
 pub struct Volumes {
     /// Corners of triangles, counter-clockwise from outside.
     pub indices: Vec<u32>,
-    /// For each caster, places in `indices`.
+    /// For each caster, ranges of `indices`.
     pub parts: Vec<Parts>,
 }
 
-/// Where a caster's volume lies, in corners.
+/// Where a caster's volume lies in [`Volumes::indices`].
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Parts {
     /// Walls.
@@ -60,11 +60,11 @@ pub struct Parts {
 /// A part of a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
-    /// What leads away from the light.
+    /// Faces that lead from the caster's edges away from the light.
     Walls,
-    /// The casters themselves.
+    /// The caster's own triangles.
     Caps,
-    /// What ends a lamp's volumes.
+    /// The far ends of a lamp's volumes.
     DarkCaps,
 }
 
@@ -72,7 +72,7 @@ impl Part {
     /// All of them, in the order in which they lie in [`Volumes::indices`].
     pub const ALL: [Self; 3] = [Self::Walls, Self::Caps, Self::DarkCaps];
 
-    /// Where it lies.
+    /// The range of this part.
     pub fn of(self, parts: &Parts) -> Range<u32> {
         match self {
             Self::Walls => parts.walls.clone(),
@@ -85,9 +85,9 @@ impl Part {
 /// Which walls are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// Those that cancel. Casters whose triangles share next to no edges are spared the search.
+    /// Walls that cancel. Casters that share few edges are not searched.
     Silhouettes,
-    /// None: each triangle has its own prism, and is right by itself.
+    /// No walls: each triangle has a whole prism.
     Prisms,
 }
 
@@ -126,14 +126,14 @@ fn walls_of_prisms(casters: &Casters, faces: &[i8], caster: &Caster, extrusion: 
     walls.collect()
 }
 
-/// What the triangles along an edge say together.
+/// How often the wall of an edge is drawn, with its sign: the sum over its triangles.
 pub fn edge_count(casters: &Casters, faces: &[i8], edge: usize) -> i32 {
     casters.uses_of(edge).iter().map(|u| u.sign() * i32::from(faces[u.triangle()])).sum()
 }
 
 /// A wall outside of a patch whose boundary runs along the edge from its lower point to its higher (`way` 1) or back (-1).
-/// Both start from the same corner and cut their quad along the same diagonal, so that rasterisers, which reckon from the
-/// first corner, give one the depths of the other.
+/// Both start at the same corner and cut the quad along the same diagonal, so that a rasteriser, which interpolates from the first
+/// corner, gives both the same depths.
 fn wall(casters: &Casters, [low, high]: [u32; 2], way: i32, extrusion: Extrusion) -> Vec<u32> {
     let points = casters.points_m.len() as u32;
     match (extrusion, way) {

@@ -1,8 +1,8 @@
-//! Welding: corners at the same place become one point, whatever mesh, primitive or texture seam they come from, and
-//! triangles that share two points share an edge.
+//! Welding: corners with equal coordinates become one point, whatever mesh, primitive or texture seam they come from. Triangles that
+//! share two points share an edge.
 //!
-//! Places are compared bit for bit. A tolerance would move corners, and a shadow volume whose corners are not the very
-//! ones that are drawn does not begin where its surface is.
+//! Coordinates are compared bit for bit. A tolerance would move corners, and then a shadow volume would not start exactly at the surface
+//! that is drawn.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Triangles over shared points, with their edges.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Welded {
-    /// Where the points are, bake space.
+    /// Points in bake space, in metres.
     pub points_m: Vec<Vec3>,
     /// Points of each triangle, in the order of its corners.
     pub triangles: Vec<[u32; 3]>,
@@ -36,12 +36,12 @@ impl EdgeUse {
         (self.0 >> 1) as usize
     }
 
-    /// +1 where the triangle's corners run from the edge's lower point to its higher, -1 where they run back.
+    /// +1 where the triangle's corners run from the edge's lower index to its higher, -1 where they run the other way.
     pub fn sign(self) -> i32 {
         1 - 2 * (self.0 & 1) as i32
     }
 
-    /// Both in one number: twice the triangle, and one more where its corners run back.
+    /// Triangle and sign in one number: twice the triangle's index, plus one where the sign is -1.
     pub fn code(self) -> u32 {
         self.0
     }
@@ -58,7 +58,7 @@ impl EdgeUse {
 }
 
 impl Welded {
-    /// Welds triangles, given by their corners. Triangles with two corners at one place have no edges there.
+    /// Welds triangles, given by their corners. A triangle has no edge between two equal corners.
     pub fn new(corners_m: &[[Vec3; 3]]) -> Self {
         let (points_m, triangles) = weld(corners_m);
         let mut directed: Vec<([u32; 2], EdgeUse)> = triangles
@@ -90,7 +90,7 @@ impl Welded {
 }
 
 fn weld(corners_m: &[[Vec3; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    // Adding zero makes one of the two zeros.
+    // Adding zero turns -0.0 into 0.0.
     let key = |corner: &Vec3| (*corner + 0.0).to_array().map(f32::to_bits);
     let flat = corners_m.as_flattened();
     let mut sorted: Vec<([u32; 3], u32)> = flat.par_iter().enumerate().map(|(i, c)| (key(c), i as u32)).collect();
@@ -123,14 +123,14 @@ mod tests {
     }
 
     #[test]
-    fn the_two_zeros_are_one_place() {
+    fn both_zeros_are_one_coordinate() {
         let [a, b, c] = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let welded = Welded::new(&[[a, b, c], [Vec3::splat(-0.0), c, b]]);
         assert_eq!((welded.points_m.len(), welded.edges.len()), (3, 3));
     }
 
     #[test]
-    fn a_triangle_with_two_corners_at_one_place_has_no_edge_there() {
+    fn a_triangle_has_no_edge_between_two_equal_corners() {
         let welded = Welded::new(&[[Vec3::ZERO, Vec3::ZERO, Vec3::X]]);
         assert_eq!(welded.edges.len(), 1);
         assert_eq!(welded.uses_of(0).iter().map(|u| u.sign()).sum::<i32>(), 0);
