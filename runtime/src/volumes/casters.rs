@@ -166,9 +166,8 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
     let mut caster_of_body = vec![0; count];
     let (mut caster, mut triangles_left) = (0, 0);
     for (i, key) in keys.iter().enumerate() {
-        let is_together = |other: &OrderKey| {
-            (other.instance, other.is_open, other.alone) == (key.instance, key.is_open, key.alone)
-        };
+        let is_together =
+            |other: &OrderKey| (other.instance, other.is_open, other.alone) == (key.instance, key.is_open, key.alone);
         if i > 0 && (triangles_left == 0 || !is_together(&keys[i - 1])) {
             caster += 1;
             triangles_left = MOST_TRIANGLES;
