@@ -1,15 +1,16 @@
 //! Placing charts and tiles on pages.
 //!
-//! Theory: one density for the whole scene, in texels a metre, so that a shadow's edge is equally sharp everywhere. Given a
-//! density, each thing's size in texels is known and pages are packed; given pages instead, the density is found by
-//! bisection, packing anew for each guess.
+//! Theory: one density for the whole scene, in texels per metre, so that shadow edges are equally sharp everywhere. A
+//! given density determines all sizes in texels, and pages are packed. If the number of pages is given instead, the
+//! density is found by bisection, which packs again for each guess.
 //!
 //! Practice:
-//! * A mesh under one instance is packed chart by chart among everything else, all of it on one page, because a
-//!   [`Placement`] names one page. A mesh under several is packed once, as a [`Tile`], and each instance owns a rectangle.
-//! * A chart longer than the page gets the density that fits it. A mesh too large for a page at the density asked for
-//!   gets less, down to what fits.
-//! * Things are dealt to pages largest first, each to the emptiest page.
+//! * A mesh with one instance is packed chart by chart among the others' charts, all on one page, because a
+//!   [`Placement`] names one page. A mesh with several instances is packed once, as a [`Tile`], and each instance has a
+//!   rectangle.
+//! * A chart longer than the page gets a lower density that fits. So does a mesh that is too large for a page at the
+//!   requested density.
+//! * Pages are filled largest first, each group going to the emptiest page.
 
 use super::strip::{self, Packed, Shape};
 use super::tile::{ChartBox, Tile, reference_scale};
@@ -18,45 +19,45 @@ use super::{PageSize, Placement};
 use glam::{DVec2, Vec2};
 use rayon::prelude::*;
 
-/// A mesh to be placed, and every instance of it.
+/// A mesh to be placed, and all its instances.
 pub(super) struct AtlasMesh {
     pub form: MeshLayout,
-    /// For each instance: its index in the scene, and metres a unit of object space.
+    /// For each instance: its index in the scene, and metres per unit of object space.
     pub instances: Vec<(usize, f64)>,
-    /// Share of the scene's density that this mesh gets: 1, or less if it would not fit a page.
+    /// Share of the scene's density that this mesh gets: 1, or less if it would not fit a page otherwise.
     pub share: f64,
 }
 
-/// What is known of a mesh's layout.
+/// How a mesh is laid out.
 pub(super) enum MeshLayout {
-    /// Charts still to be packed.
+    /// Charts from unwrapping, not packed yet.
     Charts(Charts),
-    /// A finished layout of the file's.
+    /// The file's own finished layout.
     FileLayout(FileLayout),
 }
 
-/// A finished layout: the box of [0, 1] that it uses, and its scale.
+/// A layout from the file: the part of [0, 1] that it uses, and its scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FileLayout {
-    /// Least coordinates.
+    /// Least texture coordinates.
     pub low: DVec2,
-    /// Extent.
+    /// Extent in texture coordinates.
     pub size: DVec2,
-    /// Length in object space of one unit of texture coordinates, on average.
+    /// Mean length in object space of one unit of texture coordinates.
     pub object_per_uv: f64,
     /// Area in texture coordinates.
     pub uv_area: f64,
 }
 
-/// A shape on a page and what it is for.
+/// A shape to be packed, and what it belongs to.
 #[derive(Clone)]
 struct Piece {
     shape: Shape,
     item: usize,
-    part: PieceKind,
+    kind: PieceKind,
 }
 
-/// Pieces that must share a page.
+/// Pieces that must be on the same page, and their area in texels.
 struct PieceGroup {
     pieces: Vec<Piece>,
     texels: f64,
@@ -64,16 +65,16 @@ struct PieceGroup {
 
 #[derive(Clone, Copy)]
 enum PieceKind {
-    /// A chart of a mesh that is packed loose.
+    /// A chart of a mesh with a single instance.
     Chart(usize, ChartBox),
-    /// An instance, the index being into [`AtlasMesh::instances`], and its content in texels.
+    /// An instance's rectangle: its index in [`AtlasMesh::instances`], and its content's size in texels.
     Instance(usize, DVec2),
 }
 
-/// Everything placed.
+/// The result: everything placed on pages.
 pub(super) struct AtlasPlan {
     pages: Vec<PlannedPage>,
-    /// One per item that is packed as a tile.
+    /// For each mesh, its tile if it has several instances.
     tiles: Vec<Option<Tile>>,
     padding: u32,
 }
@@ -84,7 +85,7 @@ struct PlannedPage {
     packed: Packed,
 }
 
-/// What is placed, and on what.
+/// The meshes to be placed and the page settings.
 pub(super) struct Arrangement<'a> {
     pub items: &'a [AtlasMesh],
     pub page_size_texels: u32,
@@ -92,7 +93,7 @@ pub(super) struct Arrangement<'a> {
 }
 
 impl AtlasMesh {
-    /// Surface in the scene, over all instances.
+    /// Surface area in the scene, over all instances.
     pub fn area_m2(&self) -> f64 {
         let object = match &self.form {
             MeshLayout::Charts(charts) => charts.area(),
@@ -101,7 +102,7 @@ impl AtlasMesh {
         object * self.instances.iter().map(|(_, k)| k * k).sum::<f64>()
     }
 
-    /// Charts, each counted once however many instances show it. A layout of the file's counts as one.
+    /// Number of charts, independent of the number of instances. A layout from the file counts as one.
     pub fn chart_count(&self) -> usize {
         match &self.form {
             MeshLayout::Charts(charts) => charts.sizes.len(),
@@ -109,7 +110,7 @@ impl AtlasMesh {
         }
     }
 
-    fn is_loose(&self) -> bool {
+    fn has_loose_charts(&self) -> bool {
         matches!(self.form, MeshLayout::Charts(_)) && self.instances.len() == 1
     }
 
@@ -119,15 +120,15 @@ impl AtlasMesh {
 }
 
 impl Arrangement<'_> {
-    /// Places everything at a density in texels a metre, on at most `pages` pages; `None` if it does not fit.
+    /// Places everything at a density in texels per metre, on at most `pages` pages; `None` if it does not fit.
     pub fn at_density(&self, texels_per_metre: f64, pages: u32) -> Option<AtlasPlan> {
         self.place(texels_per_metre, pages, self.page_size_texels)
     }
 
-    /// Places everything on the smallest page, or as few pages as it takes, up to `most`.
+    /// Places everything on the smallest single page, or else on as few full pages as possible, up to `most`.
     pub fn compactly(&self, texels_per_metre: f64, most: u32) -> Option<AtlasPlan> {
-        let (_, units) = self.units(texels_per_metre);
-        let area: f64 = units.iter().map(|u| u.texels).sum();
+        let (_, groups) = self.groups(texels_per_metre);
+        let area: f64 = groups.iter().map(|u| u.texels).sum();
         let mut side = (area.sqrt() * 1.02).ceil().max(16.0);
         while side < f64::from(self.page_size_texels) {
             if let Some(plan) = self.place(texels_per_metre, 1, (side as u32).next_multiple_of(4)) {
@@ -141,7 +142,7 @@ impl Arrangement<'_> {
         tries.into_iter().find_map(|pages| self.at_density(texels_per_metre, pages))
     }
 
-    /// Whether one item fits a page by itself.
+    /// Whether each instance of one mesh fits a page by itself.
     pub fn fits_alone(&self, item: usize, texels_per_metre: f64) -> bool {
         let alone = Arrangement { items: std::slice::from_ref(&self.items[item]), ..*self };
         let instances = self.items[item].instances.len() as u32;
@@ -149,8 +150,8 @@ impl Arrangement<'_> {
     }
 
     fn place(&self, texels_per_metre: f64, pages: u32, side: u32) -> Option<AtlasPlan> {
-        let (tiles, units) = self.units(texels_per_metre);
-        let dealt = deal(units, pages);
+        let (tiles, groups) = self.groups(texels_per_metre);
+        let dealt = deal(groups, pages);
         let place_page = |mut pieces: Vec<Piece>| {
             let shapes: Vec<_> = pieces.iter_mut().map(|p| std::mem::take(&mut p.shape)).collect();
             let packed = strip::pack(&shapes, side, side)?;
@@ -161,27 +162,27 @@ impl Arrangement<'_> {
         Some(AtlasPlan { pages, tiles, padding: self.padding_texels })
     }
 
-    /// Tiles, and what must stay together on a page, with its area in texels.
-    fn units(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<PieceGroup>) {
+    /// Tiles, and the groups of pieces to be packed.
+    fn groups(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<PieceGroup>) {
         let of_item =
-            |(index, item): (usize, &AtlasMesh)| self.units_of_item(index, item, texels_per_metre * item.share);
-        let (tiles, units): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
+            |(index, item): (usize, &AtlasMesh)| self.groups_of_mesh(index, item, texels_per_metre * item.share);
+        let (tiles, groups): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
         let measured = |pieces: Vec<Piece>| {
             let texels = pieces.iter().map(|p| p.shape.area()).sum();
             PieceGroup { pieces, texels }
         };
-        (tiles, units.into_iter().flatten().map(measured).collect())
+        (tiles, groups.into_iter().flatten().map(measured).collect())
     }
 
-    fn units_of_item(&self, item: usize, what: &AtlasMesh, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
+    fn groups_of_mesh(&self, item: usize, what: &AtlasMesh, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
         let (padding, scales) = (self.padding_texels, what.scales());
-        let room = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
+        let limit_texels = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
         let rectangles = |contents: Vec<DVec2>| {
             let piece = |(slot, content): (usize, DVec2)| {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
                 let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
                 let shape = Shape::rectangle(width, height, false);
-                vec![Piece { shape, item, part: PieceKind::Instance(slot, content) }]
+                vec![Piece { shape, item, kind: PieceKind::Instance(slot, content) }]
             };
             contents.into_iter().enumerate().map(piece).collect()
         };
@@ -190,18 +191,18 @@ impl Arrangement<'_> {
                 let content = |k: &f64| given.size * given.object_per_uv * k * texels_per_metre;
                 (None, rectangles(scales.iter().map(content).collect()))
             }
-            MeshLayout::Charts(charts) if what.is_loose() => {
+            MeshLayout::Charts(charts) if what.has_loose_charts() => {
                 let piece = |(chart, &size): (usize, &DVec2)| {
-                    let chart_box = ChartBox::new(size, texels_per_metre * scales[0], room);
+                    let chart_box = ChartBox::new(size, texels_per_metre * scales[0], limit_texels);
                     let shape = chart_box.shape(charts, chart, padding);
-                    Piece { shape, item, part: PieceKind::Chart(chart, chart_box) }
+                    Piece { shape, item, kind: PieceKind::Chart(chart, chart_box) }
                 };
                 (None, vec![charts.sizes.iter().enumerate().map(piece).collect()])
             }
             MeshLayout::Charts(charts) => {
                 let reference = reference_scale(charts, &scales, texels_per_metre, padding);
                 let largest = scales.iter().copied().fold(reference, f64::max);
-                let tile = Tile::new(charts, texels_per_metre * reference, padding, room * reference / largest);
+                let tile = Tile::new(charts, texels_per_metre * reference, padding, limit_texels * reference / largest);
                 let contents = scales.iter().map(|k| tile.inner * (k.max(reference) / reference)).collect();
                 (Some(tile), rectangles(contents))
             }
@@ -209,12 +210,12 @@ impl Arrangement<'_> {
     }
 }
 
-/// Deals units to pages, largest first, each to the page with most room. Empty pages are left out.
-fn deal(mut units: Vec<PieceGroup>, pages: u32) -> Vec<Vec<Piece>> {
-    units.sort_by(|a, b| b.texels.total_cmp(&a.texels));
+/// Distributes groups over pages, largest first, each to the emptiest page. Empty pages are dropped.
+fn deal(mut groups: Vec<PieceGroup>, pages: u32) -> Vec<Vec<Piece>> {
+    groups.sort_by(|a, b| b.texels.total_cmp(&a.texels));
     let mut filled = vec![0.0f64; pages.max(1) as usize];
     let mut dealt = vec![Vec::new(); filled.len()];
-    for PieceGroup { pieces, texels } in units {
+    for PieceGroup { pieces, texels } in groups {
         let emptiest = (0..filled.len()).min_by(|&a, &b| filled[a].total_cmp(&filled[b])).unwrap_or(0);
         filled[emptiest] += texels;
         dealt[emptiest].extend(pieces);
@@ -224,19 +225,19 @@ fn deal(mut units: Vec<PieceGroup>, pages: u32) -> Vec<Vec<Piece>> {
 }
 
 impl AtlasPlan {
-    /// Sizes of the pages.
+    /// Size of each page.
     pub fn page_sizes(&self) -> Vec<PageSize> {
         self.pages.iter().map(|p| p.size).collect()
     }
 
-    /// Placements by scene instance; those that nothing was planned for stay as they are.
+    /// Writes the placements of all placed instances; the others are not changed.
     pub fn write_placements(&self, items: &[AtlasMesh], placements: &mut [Placement]) {
         for (page, planned) in self.pages.iter().enumerate() {
             for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
                 let item = &items[piece.item];
                 let page_texels = planned.size.as_dvec2();
                 let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
-                let (slot, scale, offset) = match (piece.part, &item.form) {
+                let (slot, scale, offset) = match (piece.kind, &item.form) {
                     (PieceKind::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
                     (PieceKind::Instance(slot, content), MeshLayout::FileLayout(given)) => {
                         let scale = content / given.size;
@@ -252,7 +253,7 @@ impl AtlasPlan {
         }
     }
 
-    /// For each item, the layout coordinates of its vertices; none for a layout that was given.
+    /// For each mesh, the layout coordinates of its vertices; empty for a layout from the file.
     pub fn layout_uvs(&self, items: &[AtlasMesh]) -> Vec<Vec<Vec2>> {
         let chart_positions = self.chart_positions(items);
         let of_item = |(index, item): (usize, &AtlasMesh)| {
@@ -266,17 +267,17 @@ impl AtlasPlan {
         items.par_iter().enumerate().map(of_item).collect()
     }
 
-    /// For each item, where its charts went; none for one that is not packed loose.
+    /// For each mesh with a single instance, the positions of its charts; empty for the others.
     fn chart_positions(&self, items: &[AtlasMesh]) -> Vec<Vec<ChartPosition>> {
         let count = |item: &AtlasMesh| match &item.form {
-            MeshLayout::Charts(charts) if item.is_loose() => charts.sizes.len(),
+            MeshLayout::Charts(charts) if item.has_loose_charts() => charts.sizes.len(),
             _ => 0,
         };
         let mut chart_positions: Vec<_> =
             items.iter().map(|item| vec![ChartPosition::default(); count(item)]).collect();
         for planned in &self.pages {
             for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
-                if let PieceKind::Chart(chart, chart_box) = piece.part {
+                if let PieceKind::Chart(chart, chart_box) = piece.kind {
                     let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
                     let page_texels = planned.size.as_dvec2();
                     chart_positions[piece.item][chart] =
@@ -288,7 +289,7 @@ impl AtlasPlan {
     }
 }
 
-/// Where a chart that is packed loose lies.
+/// Position of a chart on its page.
 #[derive(Clone, Copy)]
 struct ChartPosition {
     corner: DVec2,

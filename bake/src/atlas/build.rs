@@ -1,4 +1,4 @@
-//! Making an atlas: judge what the file brings, unwrap the rest, find the density, place everything.
+//! Builds an atlas: check the file's own layouts, unwrap the other meshes, find the density, place everything.
 
 use super::arrange::{AtlasMesh, AtlasPlan, MeshLayout};
 use super::error::AtlasError;
@@ -10,9 +10,9 @@ use super::{existing, measure, shared};
 use crate::scene::{Alpha, Scene};
 use rayon::prelude::*;
 
-/// Gives every instance texels of its own. `progress` gets the share that is done and returns false to stop.
+/// Gives every instance its own texels. `progress` gets the fraction done (0 to 1) and returns false to stop.
 ///
-/// The same scene and settings give the same atlas at any number of threads. An empty scene gives an atlas without pages.
+/// The result does not depend on the number of threads. An empty scene gives an atlas without pages.
 pub fn build(
     scene: &Scene,
     settings: &AtlasSettings,
@@ -24,7 +24,7 @@ pub fn build(
     if let Some(atlas) = shared::shared_square(scene, settings, &drawn) {
         return Ok(atlas);
     }
-    let mut items = make_items(scene, settings, &drawn, &meter)?;
+    let mut items = make_meshes(scene, settings, &drawn, &meter)?;
     loop {
         let mut warnings: Vec<_> = measure::refusal_warning(scene, settings, &items).into_iter().collect();
         let plan = find_plan(settings, &mut items, &mut warnings, &meter)?;
@@ -61,7 +61,8 @@ fn check(settings: &AtlasSettings) -> Result<(), AtlasError> {
     }
 }
 
-/// For each mesh, the instances that get texels, each with metres a unit of object space (the root of the area ratio).
+/// For each mesh, the instances that get texels, each with its metres per unit of object space (root of the area
+/// ratio).
 fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     let scale = |&index: &usize| {
         let instance = &scene.instances[index];
@@ -93,8 +94,8 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
     drawn
 }
 
-/// Everything that gets texels: the file's own layouts where they serve, else charts.
-fn make_items(
+/// All meshes that get texels: with the file's own layout if it can be used, else unwrapped into charts.
+fn make_meshes(
     scene: &Scene,
     settings: &AtlasSettings,
     drawn: &[Vec<(usize, f64)>],
@@ -121,7 +122,7 @@ fn unwrap_mesh(scene: &Scene, mesh: usize, meter: &ProgressMeter) -> Result<Char
     unwrap::unwrap(&scene.meshes[mesh], &|| meter.reach(0.0)).ok_or(AtlasError::Cancelled)
 }
 
-/// The atlas of a plan.
+/// Turns a plan into the atlas.
 fn assemble(scene: &Scene, items: &[AtlasMesh], plan: &AtlasPlan) -> Atlas {
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     plan.write_placements(items, &mut placements);

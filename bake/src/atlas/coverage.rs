@@ -1,29 +1,29 @@
 //! Which texels a triangle touches.
 //!
-//! Theory: conservative rasterisation. A texel is touched if its square and the triangle have more than a hair
-//! ([`EPSILON_TEXELS`]) in common. Within one row of texels a triangle's part is convex, so it touches one run of them.
+//! Theory: conservative rasterisation. A texel is touched if its square and the triangle overlap by more than
+//! [`EPSILON_TEXELS`]. Within one row of texels the triangle's part is convex, so it touches one run of texels.
 //!
-//! Practice: a border that lies on a line between two texels, as charts' borders often do, must not claim the texels
-//! beyond it: hence the hair. A triangle thinner than the hair still gets the one row, and in each row the one texel, that
-//! its middle lies in. So every point of a triangle lies in a touched texel, or within two hairs of one.
+//! Practice: chart borders often lie exactly between two texels and must not touch the texels beyond: hence the
+//! epsilon. A triangle thinner than the epsilon still touches one row, and in each row one texel, at its middle. So
+//! every point of a triangle lies in a touched texel, or within two epsilons of one.
 
 use glam::DVec2;
 use std::ops::Range;
 
-/// Overlap that does not count, in texels: above the rounding of `f32` coordinates on a page of 8192 texels.
+/// Overlap that is ignored, in texels. Larger than the rounding of `f32` coordinates on a page of 8192 texels.
 pub(super) const EPSILON_TEXELS: f64 = 1.0 / 512.0;
 
-/// A triangle in texels of its page.
+/// A triangle's corners in texels of its page.
 pub(super) type TexelTriangle = [DVec2; 3];
 
-/// Texel rows that the triangle touches. Never empty on a page of at least one row.
+/// Texel rows that the triangle touches; never empty if the page has rows.
 pub(super) fn rows(corners: &TexelTriangle, height: u32) -> Range<u32> {
     let low = corners.iter().fold(f64::INFINITY, |low, c| low.min(c.y));
     let high = corners.iter().fold(f64::NEG_INFINITY, |high, c| high.max(c.y));
     cells(low, high, height)
 }
 
-/// Texel columns that the triangle touches within a row that [`rows`] named.
+/// Texel columns that the triangle touches within one of its [`rows`].
 pub(super) fn columns(corners: &TexelTriangle, row: u32, width: u32) -> Range<u32> {
     let (bottom, top) = (f64::from(row) - EPSILON_TEXELS, f64::from(row) + 1.0 + EPSILON_TEXELS);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -42,7 +42,7 @@ pub(super) fn columns(corners: &TexelTriangle, row: u32, width: u32) -> Range<u3
     if low <= high { cells(low, high, width) } else { 0..0 }
 }
 
-/// Cells of unit length that [low, high] overlaps by more than a hair; else the one its middle lies in.
+/// Unit cells that [low, high] overlaps by more than the epsilon; if none, the cell of its middle.
 fn cells(low: f64, high: f64, count: u32) -> Range<u32> {
     let last = f64::from(count) - 1.0;
     let (first, end) = ((low + EPSILON_TEXELS).floor(), (high - EPSILON_TEXELS).ceil());
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn borders_on_texel_lines_claim_nothing_beyond() {
+    fn borders_between_texels_touch_nothing_beyond() {
         let half = [DVec2::new(2.0, 3.0), DVec2::new(4.0, 3.0), DVec2::new(4.0, 5.0)];
         assert_eq!(touched(half), [(2, 3), (3, 3), (3, 4)]);
     }

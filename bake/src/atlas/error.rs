@@ -5,38 +5,40 @@ use thiserror::Error;
 /// Why there is no atlas.
 #[derive(Debug, Error, PartialEq)]
 pub enum AtlasError {
-    /// Page size, padding, density or page count out of range.
+    /// Page size, padding, density or page count is out of range.
     #[error("{name} is {value}, but must be {requirement}")]
     BadSetting {
-        /// Which.
+        /// Name of the setting.
         name: &'static str,
-        /// What was given.
+        /// The value given.
         value: String,
-        /// What would be accepted.
+        /// Accepted values.
         requirement: &'static str,
     },
-    /// The density asked for needs too many texels.
+    /// The requested density needs too many texels.
     #[error(
-        "{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed: lower the density"
+        "{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed: \
+         lower the density"
     )]
     TooDense {
-        /// Asked for.
+        /// Requested density, in texels per metre.
         density_per_metre: f64,
-        /// About what it needs.
+        /// Approximate number of texels needed.
         texels: u64,
-        /// The limit.
+        /// Most texels allowed.
         most: u64,
     },
     /// Charts do not fit at any density.
     #[error(
-        "{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density: use larger pages"
+        "{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density: \
+         use larger pages"
     )]
     PageTooSmall {
-        /// How many charts there are.
+        /// Number of charts.
         charts: usize,
-        /// Around each.
+        /// Texels around each chart.
         padding: u32,
-        /// Side of a page.
+        /// Side of a page, in texels.
         page_size: u32,
     },
     /// The progress callback returned false.

@@ -1,14 +1,19 @@
-//! Judging the texture coordinates that a file brings.
+//! Checks whether the file's own texture coordinates can be used as a layout.
 //!
-//! Theory: `TEXCOORD_1` is where authors put coordinates made for light maps, `TEXCOORD_0` never is one (it tiles, mirrors
-//! and overlaps). It serves as a layout if every surface point has texels of its own.
+//! Theory: authors put light map coordinates into `TEXCOORD_1`; `TEXCOORD_0` usually tiles, mirrors and overlaps. A set
+//! can be used as a layout if every surface point has its own texels.
 //!
-//! Practice: a mesh's set is used as it is if all of it is finite and within [0, 1], if all but [`NO_AREA_SHARE`] of its
-//! surface has area in it, if no more than [`OVERLAP_SHARE`] of it overlaps, and if, at the size it gets on the page, few of
-//! its texels ([`CROWDED_SHARE`]) are wanted by two islands. Islands may be mirrored: reading does not care. Two uses are
-//! told apart: all meshes, each drawn once, share one [0, 1] without overlap ([`share_one_square`]), or each has its own.
-//! In the second case a set must also fill [`LEAST_FILL`] of its rectangle: exporters leave leftovers in `TEXCOORD_1` that
-//! do not overlap but spread a few specks over the whole square, and would starve the rest of the page.
+//! Practice: a mesh's set is used unchanged if
+//!
+//! * all coordinates are finite and within [0, 1];
+//! * at most [`NO_AREA_SHARE`] of the surface has no area in the set;
+//! * at most [`OVERLAP_SHARE`] of the set's area overlaps;
+//! * at its final size on the page, at most [`CROWDED_SHARE`] of its texels are touched by two islands.
+//!
+//! Mirrored islands are allowed. There are two cases: all meshes, each drawn once, share one [0, 1] without overlap
+//! ([`share_one_square`]); or each mesh has its own rectangle. In the second case a set must also fill [`LEAST_FILL`]
+//! of its rectangle, because some exporters leave coordinates in `TEXCOORD_1` that do not overlap but spread small
+//! specks over the whole square, which would waste the page.
 
 use super::PageSize;
 use super::arrange::FileLayout;
@@ -18,39 +23,39 @@ use crate::scene::{Mesh, Scene};
 use glam::{DVec2, Vec2};
 use std::collections::{HashMap, HashSet};
 
-/// Share of the surface that may be collapsed to nothing in the set.
+/// Largest share of the surface without area in the set.
 const NO_AREA_SHARE: f64 = 1e-4;
-/// Share of the set's area that may be covered twice.
+/// Largest share of the set's area that is covered twice.
 const OVERLAP_SHARE: f64 = 1e-3;
-/// Share of texels that two islands may both touch.
+/// Largest share of texels that two islands both touch.
 pub(super) const CROWDED_SHARE: f64 = 0.02;
-/// Least share of its box that a set must cover, if it is to have a rectangle of its own.
+/// Least share of its bounding box that a set with its own rectangle must cover.
 const LEAST_FILL: f64 = 0.25;
-/// Marks a texel with two owners.
+/// Marks a texel that two islands touch.
 const CROWDED: u32 = u32::MAX;
-/// Marks a texel without one.
+/// Marks a texel that no island touches.
 const UNOWNED: u32 = u32::MAX - 1;
-/// How far outside [0, 1] is still rounding.
+/// Coordinates this far outside [0, 1] are accepted as rounding.
 const ROUNDING: f32 = 1e-5;
 
-/// Why a set cannot serve as a layout.
+/// Why a set cannot be used as a layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LayoutProblem {
     /// The mesh has no such set.
     Missing,
-    /// NaN or infinite.
+    /// Some coordinate is NaN or infinite.
     NotFinite,
-    /// Outside [0, 1]: it tiles.
+    /// Some coordinate is outside [0, 1]: the set tiles.
     Outside,
-    /// Some of the surface has no area in it.
+    /// Too much of the surface has no area in the set.
     NoArea,
-    /// Triangles overlap.
+    /// Too much of the set overlaps.
     Overlap,
-    /// It would leave most of its rectangle empty.
+    /// The set would leave most of its rectangle empty.
     Sparse,
 }
 
-/// The mesh's `TEXCOORD_1`, if it can serve.
+/// The mesh's `TEXCOORD_1`, if it can be used.
 pub(super) fn check_layout(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
     let uvs = mesh.texcoords[1].as_deref().ok_or(LayoutProblem::Missing)?;
     let used = mesh.indices.iter().map(|&i| uvs[i as usize]);
@@ -71,13 +76,13 @@ pub(super) fn check_layout(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
     Ok(FileLayout { low, size: high - low, object_per_uv: (object_area / uv_area).sqrt(), uv_area })
 }
 
-/// Whether the set fills enough of its box to be given a rectangle.
+/// The same for a set that gets its own rectangle: it must also fill enough of its bounding box.
 pub(super) fn check_own_rectangle(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
     let given = check_layout(mesh)?;
     if given.uv_area < LEAST_FILL * given.size.x * given.size.y { Err(LayoutProblem::Sparse) } else { Ok(given) }
 }
 
-/// Whether the meshes, all valid and each drawn once, use different parts of one [0, 1].
+/// Whether the meshes, all valid and each drawn once, use separate parts of one [0, 1].
 pub(super) fn share_one_square(scene: &Scene, meshes: &[usize]) -> bool {
     let mut all = Vec::new();
     for &mesh in meshes {
@@ -93,7 +98,7 @@ fn triangles(mesh: &Mesh, uvs: &[Vec2]) -> Vec<Triangle> {
     mesh.indices.chunks_exact(3).map(corners).collect()
 }
 
-/// Leaves out triangles that repeat another one, in space and in the set, facing the same way: they show the same surface,
+/// Removes triangles that repeat another one, in space and in the set, with the same front. They show the same surface,
 /// so they may share its texels.
 fn without_copies(mesh: &Mesh, triangles: &[Triangle]) -> Vec<Triangle> {
     let corner = |v: u32, uv: DVec2| {
@@ -109,7 +114,7 @@ fn without_copies(mesh: &Mesh, triangles: &[Triangle]) -> Vec<Triangle> {
     mesh.indices.chunks_exact(3).zip(triangles).filter(|pair| is_first(pair)).map(|(_, t)| *t).collect()
 }
 
-/// Summed area in object space and in texture coordinates; none if too much of the surface has no area in the set.
+/// Total area in object space and in texture coordinates; `None` if too much of the surface has no area in the set.
 fn areas(mesh: &Mesh, triangles: &[Triangle]) -> Option<(f64, f64)> {
     let object: Vec<f64> = mesh.indices.chunks_exact(3).map(|t| object_area(mesh, t)).collect();
     let uv: Vec<f64> = triangles.iter().map(|t| area2(t).abs() * 0.5).collect();
@@ -117,7 +122,7 @@ fn areas(mesh: &Mesh, triangles: &[Triangle]) -> Option<(f64, f64)> {
     if object_sum <= 0.0 || uv_sum <= 0.0 {
         return None;
     }
-    // A triangle a thousand times coarser than the mean is as good as collapsed.
+    // A triangle with a thousandth of the mean density counts as having no area.
     let collapsed = |&(o, u): &(&f64, &f64)| u / uv_sum < 1e-6 * (o / object_sum);
     let lost: f64 = object.iter().zip(&uv).filter(collapsed).map(|(o, _)| o).sum();
     (lost <= NO_AREA_SHARE * object_sum).then_some((object_sum, uv_sum))
@@ -128,24 +133,24 @@ fn object_area(mesh: &Mesh, triangle: &[u32]) -> f64 {
     (b - a).cross(c - a).length() * 0.5
 }
 
-/// Of the texels that the meshes' `TEXCOORD_1` touch on a page of this size, the share that two islands touch.
-/// `place` takes texture coordinates to texels.
-pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVec2) -> DVec2) -> f64 {
+/// The share of touched texels that two islands touch, for the meshes' `TEXCOORD_1` on a page of this size.
+/// `texel_from_uv` maps texture coordinates to texels.
+pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, texel_from_uv: impl Fn(DVec2) -> DVec2) -> f64 {
     let mut owners = vec![UNOWNED; size.texel_count()];
     let (mut touched, mut crowded, mut base) = (0u32, 0u32, 0u32);
     for mesh in meshes {
         let Some(uvs) = mesh.texcoords[1].as_deref() else { continue };
         let island = islands(mesh, uvs);
         for (triangle, corners) in mesh.indices.chunks_exact(3).zip(triangles(mesh, uvs)) {
-            let corners = corners.map(&place);
-            let mine = base + island[triangle[0] as usize];
+            let corners = corners.map(&texel_from_uv);
+            let island_id = base + island[triangle[0] as usize];
             for y in coverage::rows(&corners, size.height) {
                 for x in coverage::columns(&corners, y, size.width) {
                     let owner = &mut owners[(y * size.width + x) as usize];
                     if *owner == UNOWNED {
-                        *owner = mine;
+                        *owner = island_id;
                         touched += 1;
-                    } else if *owner != mine && *owner != CROWDED {
+                    } else if *owner != island_id && *owner != CROWDED {
                         *owner = CROWDED;
                         crowded += 1;
                     }
@@ -157,7 +162,7 @@ pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, place: impl Fn(DVe
     f64::from(crowded) / f64::from(touched.max(1))
 }
 
-/// For each vertex, the least vertex of its island. Vertices with one place in the set are one.
+/// For each vertex, the lowest vertex of its island. Vertices with equal coordinates belong to the same island.
 fn islands(mesh: &Mesh, uvs: &[Vec2]) -> Vec<u32> {
     fn find(parent: &mut [u32], mut v: u32) -> u32 {
         while parent[v as usize] != v {

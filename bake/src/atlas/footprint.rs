@@ -8,15 +8,16 @@ use std::ops::{Add, Mul};
 /// Four texels around a point of a page, and where the point lies between their centres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
-    /// `y * width + x` of each: upper left, upper right, lower left, lower right. Beyond the page's border the border's own
-    /// texel is repeated.
+    /// `y * width + x` of each: upper left, upper right, lower left, lower right. Beyond the page's border the border's
+    /// own texel is repeated.
     pub texels: [usize; 4],
     /// From the upper left texel's centre to the others', 0 to 1 along x and along y.
     pub fraction: DVec2,
 }
 
 impl Footprint {
-    /// `point` is in texels from the *centre* of the page's first texel: page coordinates times the page's size, less a half.
+    /// `point` is in texels from the *centre* of the page's first texel: page coordinates times the page's size, less a
+    /// half.
     pub fn new(point: DVec2, size: PageSize) -> Self {
         let low = point.floor();
         let last = size.as_dvec2() - 1.0;

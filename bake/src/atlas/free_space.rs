@@ -1,12 +1,11 @@
 //! Free rectangles under the skyline, for small shapes.
 //!
-//! Theory: Jylänki's waste map ("A Thousand Ways to Pack the Bin", 2010, section 4.3): what a placed shape shuts off from
-//! above is cut into rectangles, and later shapes go there first. A used rectangle is split in two (guillotine), along its
-//! shorter rest.
+//! Theory: Jylänki's waste map ("A Thousand Ways to Pack the Bin", 2010, section 4.3): space below a placed shape that
+//! can no longer be reached from above is cut into rectangles, and later shapes are placed there first. A used
+//! rectangle is split in two (guillotine split), along the shorter remaining side.
 //!
-//! Practice: under an outline the shut-off part is ragged. The largest rectangle of it is taken, then the largest on either
-//! side; crumbs are forgotten. Shapes come largest first, so a shape is tried on rectangles in the order they were made,
-//! and ones that grew too small for anything still to come are swept out now and then.
+//! Practice: the space under an outline is irregular. Its largest rectangle is kept, then the largest on either side of
+//! it, and so on; rectangles too small for any shape still to come are dropped.
 
 /// A free rectangle, in texels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,11 +30,11 @@ impl FreeRect {
 #[derive(Debug)]
 pub(super) struct FreeSpace {
     free: Vec<FreeRect>,
-    /// Sides of the smallest shape still to come: narrower gaps are not kept.
+    /// Shorter side of the smallest shape, in texels: narrower rectangles are not kept.
     least: u32,
 }
 
-/// Starts and ends of runs that are looked at when a ragged region is cut.
+/// How many starts and ends of runs are tried when an irregular region is cut.
 const CUTS: usize = 48;
 
 impl FreeSpace {
@@ -43,7 +42,8 @@ impl FreeSpace {
         Self { free: Vec::new(), least }
     }
 
-    /// Takes room for a box out of the tightest gap; `None` if no gap holds it. The flag says that it lies on its side.
+    /// Places a box into the rectangle that fits it most tightly; `None` if none does. Returns the box's position and
+    /// whether it was turned by a quarter.
     pub fn take(&mut self, width: u32, height: u32, may_turn: bool) -> Option<(u32, u32, bool)> {
         let fit = |gap: &FreeRect, (w, h): (u32, u32)| gap.holds(w, h).then(|| (gap.width - w).min(gap.height - h));
         let offers = self.free.iter().enumerate().flat_map(|(index, gap)| {
@@ -58,7 +58,7 @@ impl FreeSpace {
         Some((gap.x, gap.y, is_turned))
     }
 
-    /// Returns what is left of a gap after a box was put into its corner.
+    /// Keeps what is left of a rectangle after a box was put into its corner.
     fn split(&mut self, gap: FreeRect, width: u32, height: u32) {
         let (beside, above) = (gap.width - width, gap.height - height);
         let (right_height, top_width) = if beside < above { (height, gap.width) } else { (gap.height, width) };
@@ -72,7 +72,7 @@ impl FreeSpace {
         }
     }
 
-    /// Adds a region that is free from `low` to `high` in each of the columns that start at `x`.
+    /// Adds a free region: `columns` gives the free rows, from low to high, of each column from `x` on.
     pub fn add_region(&mut self, x: u32, columns: &[(u32, u32)]) {
         if columns.len() < self.least as usize {
             return;
@@ -83,7 +83,7 @@ impl FreeSpace {
         self.add_region(x + end as u32, &columns[end..]);
     }
 
-    /// The largest rectangle of a region: its columns, and its rows.
+    /// The largest rectangle in a region: first and last column (exclusive), low and high row.
     fn largest(&self, columns: &[(u32, u32)]) -> Option<(usize, usize, u32, u32)> {
         let stride = columns.len().div_ceil(CUTS);
         let mut best: Option<(u64, (usize, usize, u32, u32))> = None;
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stair_is_cut_into_rectangles_within_it() {
+    fn a_staircase_is_cut_into_rectangles_within_it() {
         let columns: Vec<(u32, u32)> = (0..40).map(|c| (c / 4, 12)).collect();
         let mut gaps = FreeSpace::new(2);
         gaps.add_region(100, &columns);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_is_used_up_without_overlap() {
+    fn a_rectangle_is_filled_without_overlap() {
         let mut gaps = FreeSpace::new(1);
         gaps.add_region(0, &[(0, 10); 10]);
         let mut taken = [[false; 10]; 10];

@@ -1,19 +1,19 @@
 //! The gutter: values for texels that no triangle touches but that a filter may read.
 //!
-//! Theory: a filter of two by two texels at any point of a chart reads the texel that the point lies in, which is covered,
-//! and neighbours of it. So one ring of texels around a chart must hold its values; each further ring serves wider
-//! filters and smaller mip levels.
+//! Theory: a bilinear filter at a point of a chart reads the texel that holds the point, which is covered, and its
+//! neighbours. So one ring of texels around a chart must hold the chart's values; wider filters and smaller mip levels
+//! need more rings.
 //!
-//! Practice: rings grow outwards, all charts at once, and a texel takes over the source of whichever neighbour's source is
-//! nearest to it; ties go to the lowest sample. In the first two rings that is the nearest of all, further out it may be a
-//! fraction of a texel farther. Charts of one atlas lie at least twice the padding apart, so within the
-//! padding the nearest source is always the own chart's. Based on: the same ring-by-ring growth as jump flooding with a
-//! step of one (Rong and Tan, "Jump Flooding in GPU with Applications to Voronoi Diagram and Distance Transform", 2006).
+//! Practice: rings grow outwards from all charts at once. A new texel takes the nearest of its neighbours' source
+//! samples; ties go to the lowest sample. In the first two rings that is the nearest source of all; farther out,
+//! another source may be nearer by a fraction of a texel. Charts are at least twice the padding apart, so within the
+//! padding the source is always of the same chart. Based on: jump flooding with a step of one (Rong and Tan, "Jump
+//! Flooding in GPU with Applications to Voronoi Diagram and Distance Transform", 2006).
 
 use super::{PageSamples, PageSize};
 use rayon::prelude::*;
 
-/// A texel beside a chart and the sample whose value it repeats.
+/// A texel beside a chart, and the sample whose value it copies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct GutterTexel {
     /// `y * width + x`.
@@ -45,7 +45,7 @@ pub fn gutter(size: PageSize, samples: &PageSamples, reach_texels: u32) -> Vec<G
     grown
 }
 
-/// Empty texels with a neighbour that has a source.
+/// The empty texels that have a neighbour with a source.
 fn next_ring(size: PageSize, samples: &PageSamples, sources: &[u32]) -> Vec<GutterTexel> {
     let width = size.width as usize;
     let ring_of_row = |y: u32| {
@@ -59,7 +59,7 @@ fn next_ring(size: PageSize, samples: &PageSamples, sources: &[u32]) -> Vec<Gutt
     (0..size.height).into_par_iter().flat_map_iter(ring_of_row).collect()
 }
 
-/// Of the sources of the eight neighbours, the nearest.
+/// The nearest of the eight neighbours' sources.
 fn nearest_source(size: PageSize, samples: &PageSamples, sources: &[u32], (x, y): (u32, u32)) -> Option<u32> {
     let mut best = None;
     for ny in y.saturating_sub(1)..(y + 2).min(size.height) {

@@ -1,4 +1,4 @@
-//! What an atlas came to: texels, and what to tell the user.
+//! Measures a finished atlas: covered texels, and warnings about it.
 
 use super::arrange::{AtlasMesh, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
@@ -6,7 +6,7 @@ use super::{Atlas, AtlasSettings, Density};
 use crate::scene::Scene;
 use rayon::prelude::*;
 
-/// Area of all triangles on all pages.
+/// Area of all triangles on all pages, in texels.
 pub(super) fn covered_texels(scene: &Scene, atlas: &Atlas) -> f64 {
     (0..scene.instances.len())
         .into_par_iter()
@@ -30,7 +30,7 @@ fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
     triangles.sum::<f64>() * scale.x * scale.y
 }
 
-/// Says which mesh did not get the density asked for.
+/// A warning if some meshes did not get the requested density.
 pub(super) fn fit_warning(
     scene: &Scene,
     settings: &AtlasSettings,
@@ -48,11 +48,12 @@ pub(super) fn fit_warning(
     let (count, side) = (short.len(), settings.page_size_texels);
     let name = mesh.name.as_deref().unwrap_or("without a name");
     Some(format!(
-        "{count} meshes do not fit a page of {side} texels at {asked} texels a metre; mesh {name} gets {least:.3}: use larger pages"
+        "{count} meshes do not fit a page of {side} texels at {asked} texels a metre; mesh {name} gets {least:.3}: \
+         use larger pages"
     ))
 }
 
-/// Items with a layout of the file's whose islands lie too close together at the size they got.
+/// Meshes with the file's own layout whose islands are too close together at their final size.
 pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -> Vec<usize> {
     let is_crowded = |item: &AtlasMesh| {
         let smallest = item.instances.iter().min_by(|a, b| a.1.total_cmp(&b.1));
@@ -66,13 +67,16 @@ pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -
     (0..items.len()).filter(|&i| is_crowded(&items[i])).collect()
 }
 
-/// Says how many meshes brought a `TEXCOORD_1` that could not be used.
+/// A warning if some meshes have a `TEXCOORD_1` that could not be used.
 pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<String> {
     let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
     let is_refused =
         |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
     let count = items.iter().filter(is_refused).count();
     (settings.keeps_existing && count > 0).then(|| {
-        format!("TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or is crowded: they were unwrapped anew")
+        format!(
+            "TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or has islands too close together: \
+             they were unwrapped"
+        )
     })
 }

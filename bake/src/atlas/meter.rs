@@ -2,13 +2,13 @@
 
 use std::sync::Mutex;
 
-/// Share of the progress that unwrapping takes.
+/// Share of the progress that unwrapping takes, 0 to 1.
 pub(super) const UNWRAP_SHARE: f64 = 0.7;
 
-/// Reports progress, and remembers that it was told to stop.
+/// Reports progress to a callback, and remembers if the callback asked to stop.
 pub(super) struct ProgressMeter<'a> {
     callback: &'a (dyn Fn(f64) -> bool + Sync),
-    /// Furthest reported, and whether to go on.
+    /// Largest fraction reported, and whether to go on.
     state: Mutex<(f64, bool)>,
 }
 
@@ -18,7 +18,7 @@ impl<'a> ProgressMeter<'a> {
         Self { callback, state: Mutex::new((0.0, true)) }
     }
 
-    /// Reports, never going backwards. False: stop.
+    /// Reports a fraction done (0 to 1); progress never goes backwards. Returns false to stop.
     pub fn reach(&self, fraction: f64) -> bool {
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         state.0 = state.0.max(fraction);

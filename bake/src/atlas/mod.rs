@@ -34,20 +34,20 @@ pub use footprint::Footprint;
 pub use gutter::{GutterTexel, gutter};
 pub use samples::{in_tile_order, sample_page, sample_page_supersampled, surface_point};
 
-/// What an atlas is built to.
+/// Settings for building an atlas.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AtlasSettings {
-    /// How dense texels lie. Time and memory of a bake grow with the number of texels, so with its square.
+    /// Density of texels. Time and memory of a bake grow with the number of texels, so with the density's square.
     pub density: Density,
     /// Longest side of a page, in texels; 16 to 16384, usually 1024 to 4096. Pages are cropped to what is used.
     pub page_size_texels: u32,
-    /// Empty texels on every side of every chart: charts lie twice this apart. 1 is the least that a filter of two by two
-    /// texels needs, 2 the default; each level of mipmaps wants it doubled. Atlases of many small charts feel it most.
+    /// Empty texels on every side of every chart, so that charts are twice this apart. A bilinear filter needs 1; the
+    /// default is 2; each mip level needs twice as much. It costs most in atlases of many small charts.
     pub padding_texels: u32,
-    /// Most texels over all pages; a density that needs more is refused. A sample takes 16 bytes, so the default of 2^28
-    /// bounds the samples of a scene at 4 GiB if all were held at once.
+    /// Most texels over all pages; a density that needs more is an error. A sample takes 16 bytes, so the default of
+    /// 2^28 bounds all samples of a scene at 4 GiB.
     pub most_texels: u64,
-    /// Whether a valid `TEXCOORD_1` is used as it is; otherwise everything is unwrapped.
+    /// Whether a valid `TEXCOORD_1` is used unchanged; if not, every mesh is unwrapped.
     pub keeps_existing: bool,
 }
 
@@ -68,7 +68,7 @@ impl Default for AtlasSettings {
 pub enum Density {
     /// This many texels a metre, on as many pages as it takes.
     TexelsPerMetre(f64),
-    /// As dense as fits this many pages.
+    /// The highest density that fits this many pages.
     Pages(u32),
 }
 
@@ -81,16 +81,16 @@ pub struct Atlas {
     pub layouts: Vec<Layout>,
     /// Rectangles, one per [`crate::scene::Scene::instances`].
     pub placements: Vec<Placement>,
-    /// Texel density that was reached, for an instance at its placement's full scale.
+    /// Density reached: the root of covered texels over surface area.
     pub texels_per_metre: f64,
-    /// Charts over all pages.
+    /// Number of charts over all pages.
     pub chart_count: usize,
-    /// What a user should know about how texels were dealt out: one sentence each.
+    /// What the user should know about the layout: one sentence each.
     pub warnings: Vec<String>,
 }
 
 impl Atlas {
-    /// Where coordinates of an instance's layout lie on its page, in texels.
+    /// Position on the page, in texels, of coordinates of an instance's layout.
     pub fn texel(&self, instance: usize, layout_uv: Vec2, page: PageSize) -> DVec2 {
         let Placement { scale, offset, .. } = self.placements[instance];
         (layout_uv.as_dvec2() * scale.as_dvec2() + offset.as_dvec2()) * page.as_dvec2()
@@ -122,8 +122,8 @@ impl PageSize {
     }
 }
 
-/// Unique coordinates of one mesh. Vertices on chart borders are split: `vertices[i]` is which vertex of the mesh the
-/// layout's vertex i came from, `indices` has the mesh's triangles in the mesh's order.
+/// Unique coordinates of one mesh. Vertices on chart borders are split: layout vertex i is a copy of mesh vertex
+/// `vertices[i]`. `indices` has the mesh's triangles in the mesh's order.
 #[derive(Debug, Clone)]
 pub struct Layout {
     /// Where the coordinates came from.
@@ -141,7 +141,7 @@ pub struct Layout {
 pub enum LayoutOrigin {
     /// The file's own `TEXCOORD_1`, as it was.
     File,
-    /// Made by unwrapping.
+    /// Made by unwrapping the mesh.
     Unwrapped,
 }
 
@@ -152,7 +152,7 @@ impl Layout {
         Self { uvs: mesh.texcoords[1].clone().unwrap_or_else(|| layout.uvs.clone()), ..layout }
     }
 
-    /// The mesh as it is, all coordinates zero: for a mesh that has no texels.
+    /// The mesh's own vertices with all coordinates zero: for a mesh without texels.
     pub fn of_mesh(mesh: &Mesh) -> Self {
         let count = mesh.positions.len();
         Self {
@@ -164,15 +164,15 @@ impl Layout {
     }
 }
 
-/// An instance's rectangle: `page_uv = layout_uv * scale + offset`. An instance whose surface is air
+/// An instance's rectangle: `page_uv = layout_uv * scale + offset`. An invisible instance
 /// ([`crate::scene::Alpha::Invisible`]) has no texels: see [`Placement::is_empty`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
     /// Index in [`Atlas::pages`].
     pub page: u32,
-    /// In page coordinates.
+    /// Size of the layout's unit square, in page coordinates (0 to 1).
     pub scale: Vec2,
-    /// In page coordinates.
+    /// Position of the layout's origin, in page coordinates (0 to 1).
     pub offset: Vec2,
 }
 
@@ -186,7 +186,7 @@ impl Placement {
     }
 }
 
-/// The texels of one page that stand for a surface point, in row order.
+/// The covered texels of one page, in row order. A texel is covered if some triangle touches it.
 #[derive(Debug, Clone, Default)]
 pub struct PageSamples {
     /// Ascending in `texel`, each texel at most once.
@@ -200,14 +200,14 @@ pub struct Sample {
     pub texel: u32,
     /// Flat triangle index of [`crate::scene::Geometry`].
     pub triangle: u32,
-    /// Weights of the triangle's second and third corner. The point is inside the triangle or on its edge.
+    /// Weights of the triangle's second and third corner, 0 to 1. The point is inside the triangle or on its edge.
     pub barycentric: [f32; 2],
 }
 
-/// A sample placed in the scene: what an engine is asked about.
+/// A sample's point in the scene: the input of visibility engines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
-    /// On the surface, bake space.
+    /// Position on the surface, bake space, in metres.
     pub position_m: DVec3,
     /// Unit front normal of the triangle's plane.
     pub normal: DVec3,

@@ -1,24 +1,24 @@
-//! The outline of a chart: what of its box it takes, seen from its four sides.
+//! The outline of a chart: the extent of each row and column within its bounding box.
 //!
-//! Practice: a chart is drawn conservatively into its box, every row and column keeps the first and last texel touched, and
-//! both are widened by the padding. A row or column that nothing touches counts as full.
+//! Practice: the chart is rasterised conservatively into its box. Every row and column keeps the first and last touched
+//! texel, widened by the padding. A row or column that nothing touches counts as full.
 
 use super::coverage::{self, TexelTriangle};
 
-/// Extents of a padded chart, in texels of its padded box: half-open.
+/// Extents of a padded chart, as half-open ranges in texels of its padded box.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Outline {
-    /// For each column, rows.
+    /// For each column, its rows.
     columns: Vec<(u16, u16)>,
-    /// For each row, columns.
+    /// For each row, its columns.
     rows: Vec<(u16, u16)>,
 }
 
-/// What an untouched line has: any texel widens it.
+/// The empty range: any texel widens it.
 const UNTOUCHED: (u16, u16) = (u16::MAX, 0);
 
 impl Outline {
-    /// Draws triangles, in texels of a box of `width` by `height`.
+    /// The outline of triangles given in texels of a box of `width` by `height`.
     pub fn new(triangles: impl Iterator<Item = TexelTriangle>, (width, height): (u32, u32), padding: u32) -> Self {
         let mut columns = vec![UNTOUCHED; width as usize];
         let mut rows = vec![UNTOUCHED; height as usize];
@@ -34,12 +34,12 @@ impl Outline {
         Self { columns: pad(&columns, height, padding), rows: pad(&rows, width, padding) }
     }
 
-    /// Texels between the first and last of each column.
+    /// Area in texels, counting each column from its first to its last texel.
     pub fn area(&self) -> f64 {
         self.columns.iter().map(|c| f64::from(c.1 - c.0)).sum()
     }
 
-    /// For each column of the outline after some quarter turns, its rows.
+    /// The rows of each column after `turns` quarter turns.
     pub fn columns(&self, turns: u8) -> Vec<(u16, u16)> {
         let (width, height) = (self.columns.len() as u16, self.rows.len() as u16);
         let mirror = |&(low, high): &(u16, u16), side: u16| (side - high, side - low);
@@ -56,7 +56,7 @@ fn widen(range: &mut (u16, u16), by: (u16, u16)) {
     *range = (range.0.min(by.0), range.1.max(by.1));
 }
 
-/// Widens lines, each `length` long, by `padding` in both directions, in a box that is larger by it on every side.
+/// Widens lines of `length` texels by `padding` in both directions; the padded box is larger by it on every side.
 fn pad(lines: &[(u16, u16)], length: u32, padding: u32) -> Vec<(u16, u16)> {
     let around = 2 * padding as usize;
     let padded = |line: usize| {
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    /// A triangle that takes the lower left half of a box of 6 by 3 texels.
+    /// A triangle in the lower left half of a box of 6 by 3 texels.
     fn wedge(padding: u32) -> Outline {
         let corners = [DVec2::ZERO, DVec2::new(5.8, 0.0), DVec2::new(0.0, 2.9)];
         Outline::new(std::iter::once(corners), (6, 3), padding)
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn four_turns_come_back() {
+    fn four_quarter_turns_are_none() {
         let wedge = wedge(0);
         assert_eq!(wedge.columns(1), [(0, 2), (0, 4), (0, 6)]);
         assert_eq!(wedge.columns(2), [(2, 3), (2, 3), (1, 3), (1, 3), (0, 3), (0, 3)]);

@@ -1,11 +1,11 @@
 //! Whether triangles overlap in the plane.
 //!
-//! Theory: the area that two triangles share is that of one clipped by the other (Sutherland and Hodgman, 1974), exact to
-//! rounding at any size. Neighbours that share an edge share no area.
+//! Theory: the common area of two triangles is that of one clipped by the other (Sutherland and Hodgman, 1974), exact
+//! up to rounding at any size. Neighbours with a common edge have no common area.
 //!
-//! Practice: a grid finds the pairs. A pair is looked at only in the cell that holds the lower corner of what their boxes
-//! share, so once. Counting stops when enough has been found, so that a pile of a hundred thousand triangles on one spot
-//! costs no more than a good layout.
+//! Practice: a grid finds candidate pairs. A pair is tested only in the cell that holds the lower corner of the
+//! intersection of their boxes, so only once. Counting stops at the tolerance, so a hundred thousand triangles in one
+//! place cost no more than a valid layout.
 
 use glam::DVec2;
 
@@ -26,7 +26,7 @@ pub(super) fn overlap_more_than(triangles: &[Triangle], tolerance: f64) -> bool 
         for (k, &a) in members.iter().enumerate() {
             for &b in &members[..k] {
                 let (a, b) = (&triangles[a as usize], &triangles[b as usize]);
-                if grid.is_home_of(cell, a, b) {
+                if grid.is_cell_of_pair(cell, a, b) {
                     shared += shared_area(a, b);
                 }
             }
@@ -42,7 +42,7 @@ fn bounds(t: &Triangle) -> (DVec2, DVec2) {
     (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]))
 }
 
-/// Area that two triangles have in common.
+/// Common area of two triangles.
 fn shared_area(a: &Triangle, b: &Triangle) -> f64 {
     let turn = area2(b).signum();
     let mut part = a.to_vec();
@@ -106,8 +106,8 @@ impl Grid {
         (cell.x as usize, cell.y as usize)
     }
 
-    /// Whether the boxes meet, and do so first in this cell.
-    fn is_home_of(&self, cell: usize, a: &Triangle, b: &Triangle) -> bool {
+    /// Whether the boxes intersect and this cell holds the lower corner of their intersection.
+    fn is_cell_of_pair(&self, cell: usize, a: &Triangle, b: &Triangle) -> bool {
         let ((low_a, high_a), (low_b, high_b)) = (bounds(a), bounds(b));
         let low = low_a.max(low_b);
         let (x, y) = self.cell(low);
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn shared_area_is_exact_whichever_way_triangles_turn() {
+    fn shared_area_is_exact_for_either_winding() {
         let a = triangle(0.0, 0.0, 2.0, 0.0, 0.0, 2.0);
         let b = triangle(0.0, 0.0, 2.0, 0.0, 2.0, 2.0);
         let turned = [b[0], b[2], b[1]];

@@ -1,17 +1,18 @@
-//! The surface point that each texel stands for.
+//! The surface point that each texel represents.
 //!
-//! Theory: a texel should speak for the surface that falls within it. Where its centre lies on a triangle that is the
-//! point. A texel on a chart's border may be touched by triangles and yet have its centre off them; so may every texel of
-//! a chart thinner than a texel. It then takes the nearest triangle that touches it, and of the part that this has in the
-//! texel the point nearest the centre.
+//! Theory: a texel represents the surface within it. If its centre lies on a triangle, that is the point. A texel at a
+//! chart's border can be touched by triangles although its centre is outside them; so can every texel of a chart
+//! thinner than a texel. Then the point is on the nearest triangle that touches the texel: the point nearest the centre
+//! of the triangle's part within the texel.
 //!
-//! Practice: each page is cut into bands of rows, each band holds the best triangle so far of each texel, and triangles
-//! come in the order of their index, so that ties go to the lowest and the answer does not depend on threads.
+//! Practice: each page is cut into bands of rows. A band keeps the best triangle of each texel. Triangles are visited
+//! in the order of their index, so ties go to the lowest index and the result does not depend on threads.
 //!
-//! * Points never lie on a triangle's border, where a neighbour (the wall on a floor) also lies and a ray could start on
-//!   either side of it: a point taken off centre moves [`PULL_OFF_CENTRE`] of the way towards the middle of the part that
-//!   the triangle has in that texel; a centre within [`BORDER_TEXELS`] of the border moves [`PULL_CENTRE`] of it.
-//! * A triangle whose texture coordinates have no area takes only texels that no other triangle touches, and is sampled
+//! * Points are never on a triangle's border, where a neighbour (a wall on a floor) may lie as well and a ray could
+//!   start on either side of it. A point that is not the texel's centre is moved by [`PULL_OFF_CENTRE`] of the way to
+//!   the middle of the triangle's part in the texel. A centre within [`BORDER_TEXELS`] of the border is moved by
+//!   [`PULL_CENTRE`] of it.
+//! * A triangle whose texture coordinates have no area gets only texels that no other triangle touches, and is sampled
 //!   at its middle.
 
 use super::coverage::{self, EPSILON_TEXELS, TexelTriangle};
@@ -21,22 +22,22 @@ use crate::scene::{Geometry, Scene};
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// How far points that are not texel centres move into their triangle, as a share of the way to the middle of its part.
+/// How far a point that is not the texel's centre moves into its triangle, as a share of the way to the part's middle.
 const PULL_OFF_CENTRE: f64 = 0.25;
-/// The same for centres that lie almost on a border.
+/// The same for a centre that is almost on the border.
 const PULL_CENTRE: f64 = 0.125;
-/// What "almost" means, in texels.
+/// Distance from the border, in texels, below which a centre is almost on it.
 const BORDER_TEXELS: f64 = 1.0 / 64.0;
-/// Rows that are worked on at once; 64 rows of 4096 texels fill 2 MiB.
+/// Rows in a band; 64 rows of 4096 texels take 2 MiB.
 const BAND_ROWS: u32 = 64;
-/// Edge of a tile of texels that are looked at together.
+/// Edge of a tile, in texels, for [`in_tile_order`].
 const TILE: u32 = 16;
-/// Added to the squared distance of triangles without area, so that every other triangle comes before them.
+/// Added to the squared distance of triangles without area, so that every other triangle is preferred.
 const NO_AREA_PENALTY: f64 = 4.0;
-/// Area, in texels, below which a triangle counts as having none.
+/// Twice the area, in texels, at and below which a triangle counts as having none.
 const NO_AREA_TEXELS: f64 = 1e-12;
 
-/// A triangle on the page.
+/// A triangle on the page, in texels.
 struct PageTriangle {
     corners: TexelTriangle,
     /// Twice the signed area, in texels.
@@ -49,7 +50,7 @@ impl PageTriangle {
         self.area2.abs() > NO_AREA_TEXELS
     }
 
-    /// Distance of `p` from the three lines through the edges, positive inside.
+    /// Distance in texels of `p` from the lines through the three edges, positive inside.
     fn heights(&self, p: DVec2) -> [f64; 3] {
         [0, 1, 2].map(|k| {
             let edge = self.corners[(k + 1) % 3] - self.corners[k];
@@ -65,7 +66,7 @@ impl PageTriangle {
             })
     }
 
-    /// What a texel ranks candidates by: less is better, zero where its centre is inside.
+    /// Rank of this triangle for a texel with this centre: lower is better, 0 if the centre is inside.
     fn rank(&self, centre: DVec2) -> f64 {
         if self.contains(centre) {
             0.0
@@ -75,7 +76,7 @@ impl PageTriangle {
         }
     }
 
-    /// Weights of the second and third corner at `p`, inside or on the border of the triangle.
+    /// Weights of the second and third corner at `p`, clamped to the triangle.
     fn barycentric(&self, p: DVec2) -> [f32; 2] {
         if !self.has_area() {
             return [1.0 / 3.0; 2];
@@ -92,19 +93,19 @@ pub fn sample_page(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32)
     sample_page_supersampled(scene, geometry, atlas, page, 1)
 }
 
-/// The same on a grid that is `finer` times as fine along each edge: every texel is cut into that many by that many, and
-/// those that some triangle touches have a point each. `texel` counts in the finer grid.
+/// The same on a grid that is `factor` times finer along each axis: every covered cell has a point. [`Sample::texel`]
+/// is an index in the finer grid.
 pub fn sample_page_supersampled(
     scene: &Scene,
     geometry: &Geometry,
     atlas: &Atlas,
     page: u32,
-    finer: u32,
+    factor: u32,
 ) -> PageSamples {
     let Some(&PageSize { width, height }) = atlas.pages.get(page as usize) else {
         return PageSamples::default();
     };
-    let size = PageSize { width: width * finer, height: height * finer };
+    let size = PageSize { width: width * factor, height: height * factor };
     let page_triangles = triangles_of_page(scene, geometry, atlas, page, size);
     let bands = bands(&page_triangles, size);
     let samples =
@@ -112,7 +113,7 @@ pub fn sample_page_supersampled(
     PageSamples { samples: samples.collect::<Vec<_>>().concat() }
 }
 
-/// Indices of a page's samples, tile by tile, so that what follows one another in the list lies side by side on a surface.
+/// Indices of a page's samples, tile by tile, so that consecutive samples are close together on the surface.
 pub fn in_tile_order(PageSamples { samples }: &PageSamples, size: PageSize) -> Vec<u32> {
     let place = |index: &u32| {
         let (x, y) = (samples[*index as usize].texel % size.width, samples[*index as usize].texel / size.width);
@@ -123,12 +124,12 @@ pub fn in_tile_order(PageSamples { samples }: &PageSamples, size: PageSize) -> V
     order
 }
 
-/// Bits of two numbers in turn (Morton's order): what is close in it is close in the plane.
+/// Interleaved bits of two numbers (Morton order): close values are close in the plane.
 fn interleaved(x: u32, y: u32) -> u32 {
     (0..TILE.ilog2()).map(|bit| ((x >> bit & 1) << (2 * bit)) | ((y >> bit & 1) << (2 * bit + 1))).sum()
 }
 
-/// The sampled point in the scene.
+/// The sample's point in the scene.
 pub fn surface_point(scene: &Scene, geometry: &Geometry, sample: &Sample) -> SurfacePoint {
     let triangle = sample.triangle as usize;
     let instance = geometry.instance[triangle] as usize;
@@ -220,8 +221,8 @@ fn sample_texel(page_triangle: &PageTriangle, texel: u32, size: PageSize) -> Sam
     Sample { texel, triangle: page_triangle.triangle, barycentric: page_triangle.barycentric(point) }
 }
 
-/// The triangle's part within a texel, which is taken with the hair by which triangles may miss it; the whole triangle
-/// should rounding leave nothing.
+/// The triangle's part within a texel, which is enlarged by the epsilon of the coverage test; the whole triangle if
+/// rounding leaves nothing.
 fn part_in_texel(page_triangle: &PageTriangle, x: u32, y: u32) -> Vec<DVec2> {
     let low = DVec2::new(f64::from(x), f64::from(y)) - 2.0 * EPSILON_TEXELS;
     let high = low + 1.0 + 4.0 * EPSILON_TEXELS;
@@ -234,7 +235,7 @@ fn middle(polygon: &[DVec2]) -> DVec2 {
     polygon.iter().sum::<DVec2>() / polygon.len() as f64
 }
 
-/// The point of a polygon's border that is nearest to `p`; the first of equals.
+/// The point of a polygon's border nearest to `p`; the first of equally near ones.
 fn nearest_on(polygon: &[DVec2], p: DVec2) -> DVec2 {
     let on_edge = |k: usize| {
         let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);

@@ -1,18 +1,18 @@
-//! Finding the density.
+//! Finds the density, or the number of pages.
 //!
-//! Practice: pages are given and the density sought by bisection, or the density is given and pages are added. Every guess
-//! packs anew; see [`super::strip`] for why that can be afforded.
+//! Practice: for a given number of pages, the density is found by bisection; for a given density, pages are added until
+//! everything fits. Every guess packs again, which [`super::strip`] makes fast enough.
 
 use super::arrange::{Arrangement, AtlasMesh, AtlasPlan};
 use super::error::AtlasError;
 use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::{AtlasSettings, Density};
 
-/// How near to the best density the search comes.
+/// The search stops when the density is known to this factor.
 const DENSITY_TOLERANCE: f64 = 1.004;
 /// Most pages an atlas may have.
 pub(super) const MOST_PAGES: u32 = 256;
-/// Least share of the asked density that a mesh too large for a page may get.
+/// Least share of the requested density for a mesh that is too large for a page.
 const LEAST_SHARE: f64 = 1e-4;
 
 /// Finds the density, and places everything at it.
@@ -44,13 +44,13 @@ fn plan_at_density(
         while !arrangement.fits_alone(index, density * *share) {
             *share *= 0.94;
             if *share < LEAST_SHARE || !meter.reach(UNWRAP_SHARE) {
-                return Err(stopped_or_too_small(settings, items, meter));
+                return Err(cancelled_or_too_small(settings, items, meter));
             }
         }
     }
     items.iter_mut().zip(shares).for_each(|(item, share)| item.share = share);
     let plan = arrangement(settings, items).compactly(density, MOST_PAGES);
-    plan.ok_or_else(|| stopped_or_too_small(settings, items, meter))
+    plan.ok_or_else(|| cancelled_or_too_small(settings, items, meter))
 }
 
 fn plan_for_pages(
@@ -66,7 +66,7 @@ fn plan_for_pages(
             if count == pages {
                 return Ok(plan);
             }
-            // One large mesh may have set the density; the rest need not be spread over as many pages.
+            // One large mesh may have limited the density; the rest may fit on fewer pages.
             let plan = arrangement(settings, items).compactly(density, count).unwrap_or(plan);
             warnings.push(format!(
                 "the charts take {} pages of {} texels; a larger --size takes fewer",
@@ -77,13 +77,13 @@ fn plan_for_pages(
         }
         count *= 2;
         if count > MOST_PAGES || !meter.reach(UNWRAP_SHARE) {
-            return Err(stopped_or_too_small(settings, items, meter));
+            return Err(cancelled_or_too_small(settings, items, meter));
         }
     }
 }
 
-/// The plan of highest density on this many pages, and that density in texels a metre. None if they fit at no density
-/// worth having.
+/// The plan of highest density on this many pages, and that density in texels per metre. `None` if nothing fits even at
+/// a twentieth of the ideal density.
 fn densest(
     settings: &AtlasSettings,
     pages: u32,
@@ -122,7 +122,7 @@ fn arrangement<'a>(settings: &AtlasSettings, items: &'a [AtlasMesh]) -> Arrangem
     Arrangement { items, page_size_texels: settings.page_size_texels, padding_texels: settings.padding_texels }
 }
 
-fn stopped_or_too_small(settings: &AtlasSettings, items: &[AtlasMesh], meter: &ProgressMeter) -> AtlasError {
+fn cancelled_or_too_small(settings: &AtlasSettings, items: &[AtlasMesh], meter: &ProgressMeter) -> AtlasError {
     if !meter.reach(0.0) {
         return AtlasError::Cancelled;
     }

@@ -1,4 +1,4 @@
-//! The whole scene in one square of the file's own: coordinates that were made for light maps, used as they are.
+//! A file whose meshes all share one light map: their `TEXCOORD_1` becomes the only page, unchanged.
 
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, Layout, PageSize, Placement};
@@ -6,7 +6,8 @@ use crate::scene::Scene;
 use glam::Vec2;
 use rayon::prelude::*;
 
-/// The atlas, if all meshes were laid out for light maps in one [0, 1] and that has room enough at this page size.
+/// The atlas, if the meshes' `TEXCOORD_1` share one [0, 1] without overlap and their islands are far enough apart at
+/// this page size.
 pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Vec<(usize, f64)>]) -> Option<Atlas> {
     let meshes: Vec<usize> = (0..drawn.len()).filter(|&m| !drawn[m].is_empty()).collect();
     if !settings.keeps_existing || meshes.is_empty() || meshes.iter().any(|&m| drawn[m].len() > 1) {
@@ -31,9 +32,9 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     if existing::crowded_share(&all, size, |uv| uv * size.as_dvec2()) > CROWDED_SHARE {
         return None;
     }
-    let whole = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
+    let whole_page = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
-    drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole);
+    drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole_page);
     let layout = |m: usize| {
         if drawn[m].is_empty() { Layout::of_mesh(&scene.meshes[m]) } else { Layout::of_file(&scene.meshes[m]) }
     };
@@ -46,6 +47,9 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
 fn density_warning(settings: &AtlasSettings, reached: f64) -> Option<String> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
     (reached < 0.99 * asked).then(|| {
-        format!("TEXCOORD_1 fills one page, so the density is {reached:.3} texels a metre instead of {asked}: use larger pages")
+        format!(
+            "TEXCOORD_1 fills one page, so the density is {reached:.3} texels a metre instead of {asked}: \
+             use larger pages"
+        )
     })
 }

@@ -1,29 +1,29 @@
-//! Packing shapes into a strip.
+//! Packs shapes into a strip.
 //!
-//! Theory: a skyline with profiles. What is packed is kept as its upper outline, one height a column; a shape, given by its
-//! lower and upper outline, goes where its far edge comes to lie lowest, largest first, in the best of four turns. What that
-//! shuts off from above is kept as [`FreeSpace`] for smaller shapes. Based on: Nöll and Stricker, "Efficient Packing of
-//! Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011, and Jylänki, "A Thousand Ways to Pack the Bin",
-//! 2010, section 4.
+//! Theory: a skyline with profiles. The skyline is the upper outline of all packed shapes, one height per column.
+//! Shapes, given by their lower and upper outlines, are placed largest first, each where its top is lowest, in the best
+//! of four turns. Space below that can no longer be reached is kept as [`FreeSpace`] for smaller shapes. Based on: Nöll
+//! and Stricker, "Efficient Packing of Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011, and
+//! Jylänki, "A Thousand Ways to Pack the Bin", 2010, section 4.
 //!
-//! Practice: most positions are refused by one column that stands too high, and so are all others that would have the
-//! shape over that column: the search jumps past it. Small shapes are packed as their boxes.
+//! Practice: most positions are rejected by one column that is too high, and with it all positions that cover the
+//! column, so the search skips past it. Small shapes are packed as boxes.
 
 use super::free_space::FreeSpace;
 use super::outline::Outline;
 
-/// Something to pack, in texels.
+/// A shape to pack, in texels.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shape {
     pub width: u32,
     pub height: u32,
-    /// Whether it may be turned.
+    /// Whether it may be turned by quarters.
     pub may_turn: bool,
-    /// If none, the whole box is taken.
+    /// Exact extents; none: the whole box is taken.
     pub outline: Option<Outline>,
 }
 
-/// Where a shape went.
+/// Position of a packed shape, in texels.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct PackedPosition {
     pub x: u32,
@@ -32,7 +32,7 @@ pub(super) struct PackedPosition {
     pub turns: u8,
 }
 
-/// All of the shapes, and the size of box that they need.
+/// Positions of all shapes, and the size of their bounding box in texels.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Packed {
     pub positions: Vec<PackedPosition>,
@@ -46,7 +46,7 @@ impl Shape {
         Self { width, height, may_turn, outline: None }
     }
 
-    /// Texels that it takes, more or less.
+    /// Approximate area in texels.
     pub fn area(&self) -> f64 {
         let full = f64::from(self.width) * f64::from(self.height);
         self.outline.as_ref().map_or(full, |outline| outline.area())
@@ -62,7 +62,7 @@ impl Shape {
     }
 }
 
-/// A shape turned: per column, the first row it takes and the first it does not.
+/// A shape after some quarter turns: for each column, its rows as a half-open range.
 struct TurnedShape {
     width: u32,
     height: u32,
@@ -84,7 +84,7 @@ impl TurnedShape {
         self.columns.as_ref().map_or(self.height, |columns| u32::from(columns[column as usize].1))
     }
 
-    /// The lowest place on the skyline whose far edge is below `limit`; leftmost among equals.
+    /// The lowest position on the skyline at which the shape's top is below `limit`; the leftmost of equally low ones.
     fn lowest(&self, skyline: &[u32], mut limit: u32) -> Option<(u32, u32)> {
         let deepest = (0..self.width).map(|c| self.bottom(c)).max().unwrap_or(0);
         let mut best = None;
@@ -95,8 +95,8 @@ impl TurnedShape {
                 let high = skyline[(x + column) as usize];
                 let rest = high.saturating_sub(self.bottom(column));
                 if rest + self.height >= limit {
-                    let hopeless = high.saturating_sub(deepest) + self.height >= limit;
-                    x += if hopeless { column + 1 } else { 1 };
+                    let fails_everywhere = high.saturating_sub(deepest) + self.height >= limit;
+                    x += if fails_everywhere { column + 1 } else { 1 };
                     continue 'positions;
                 }
                 y = y.max(rest);
@@ -108,7 +108,7 @@ impl TurnedShape {
         best
     }
 
-    /// Puts the shape on the skyline; what lies free below it goes to the gaps.
+    /// Puts the shape on the skyline; the free space below it is added to `gaps`.
     fn raise(&self, skyline: &mut [u32], gaps: &mut FreeSpace, x: u32, y: u32) {
         let under = &mut skyline[x as usize..][..self.width as usize];
         let free: Vec<_> = (0..).zip(under.iter()).map(|(column, &high)| (high, y + self.bottom(column))).collect();

@@ -1,10 +1,10 @@
-//! Packing the charts of one mesh, once, for all of its instances.
+//! Packs the charts of one mesh, once for all its instances.
 //!
-//! Theory: every instance of a mesh shows the same layout, each in a rectangle of its own and at its own scale. The gaps
-//! between charts scale with the rectangle, so the layout must be padded for the smallest one.
+//! Theory: all instances of a mesh use the same layout, each in its own rectangle and at its own scale. The space
+//! between charts scales with the rectangle, so the layout must be padded for the smallest instance.
 //!
-//! Practice: where scales differ widely, padding for the smallest would waste most of the largest's rectangle; then it is
-//! cheaper to show the small ones larger than they need. [`reference_scale`] weighs the two.
+//! Practice: if scales differ widely, padding for the smallest instance wastes most of the largest rectangle; then it
+//! is cheaper to enlarge the small instances' rectangles. [`reference_scale`] finds the cheapest choice.
 
 use super::outline::Outline;
 use super::strip::{self, Packed, PackedPosition, Shape};
@@ -17,11 +17,11 @@ const LEAST_OUTLINED_TEXELS: u32 = 8;
 /// A chart at some density: its content box in whole texels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChartBox {
-    /// Texels a unit of object space; lower than asked where the chart would not fit a page.
+    /// Texels per unit of object space; lower than requested if the chart would not fit a page.
     pub density: f64,
     /// Whole texels that hold the chart.
     pub cells: (u32, u32),
-    /// What is left of those texels, halved: charts sit in the middle of their box.
+    /// Half of the unused space in these texels: charts are centred in their box.
     pub slack: DVec2,
 }
 
@@ -44,7 +44,7 @@ impl ChartBox {
         Shape { width, height, may_turn: true, outline }
     }
 
-    /// Texel, from the corner of the padded box's content, of a point of the chart. Turning never mirrors.
+    /// Position in texels of a point of the chart, from the corner of the unpadded box. Turning never mirrors.
     pub fn texel(&self, point: DVec2, turns: u8) -> DVec2 {
         let texel = point * self.density + self.slack;
         let (width, height) = (f64::from(self.cells.0), f64::from(self.cells.1));
@@ -57,17 +57,17 @@ impl ChartBox {
     }
 }
 
-/// A mesh's charts in a rectangle of their own.
+/// A mesh's charts packed into one rectangle.
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     pub boxes: Vec<ChartBox>,
     pub positions: Vec<PackedPosition>,
-    /// Texels within the outer padding, at the reference scale.
+    /// Size in texels without the outer padding, at the reference scale.
     pub inner: DVec2,
 }
 
 impl Tile {
-    /// Packs at `density` texels a unit of object space. `limit_texels` bounds a chart's longer side.
+    /// Packs at `density` texels per unit of object space. `limit_texels` bounds a chart's longer side.
     pub fn new(charts: &Charts, density: f64, padding: u32, limit_texels: f64) -> Self {
         let boxes: Vec<_> = charts.sizes.iter().map(|&size| ChartBox::new(size, density, limit_texels)).collect();
         let shapes: Vec<_> = boxes.iter().enumerate().map(|(chart, b)| b.shape(charts, chart, padding)).collect();
@@ -77,7 +77,7 @@ impl Tile {
         Self { boxes, positions: packed.positions, inner }
     }
 
-    /// Where a chart's point lies, in [0, 1] of the tile's inner box.
+    /// Position of a chart's point in the unpadded tile, 0 to 1.
     pub fn uv(&self, chart: usize, point: DVec2) -> DVec2 {
         let position = self.positions[chart];
         let corner = DVec2::new(f64::from(position.x), f64::from(position.y));
@@ -94,7 +94,8 @@ fn pack_compactly(shapes: &[Shape]) -> Packed {
     fits.min_by_key(|packed| u64::from(packed.width) * u64::from(packed.height)).unwrap_or_default()
 }
 
-/// The scale that a mesh's layout is padded for; instances below it are shown at it. `density` is in texels a metre.
+/// The scale that a mesh's layout is padded for; smaller instances are enlarged to it. `density` is in texels per
+/// metre.
 pub(super) fn reference_scale(charts: &Charts, scales: &[f64], density: f64, padding: u32) -> f64 {
     let least = scales.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = scales.iter().copied().fold(0.0, f64::max);

@@ -1,49 +1,49 @@
-//! Cutting a mesh into charts and flattening them.
+//! Cuts a mesh into charts and flattens them.
 //!
 //! Theory: segmentation into charts within a normal cone, each flattened by least squares conformal maps (Lévy et al.,
-//! 2002) and as-rigid-as-possible refinement (Liu et al., 2008). All of that is the `uvunwrap` crate's.
+//! 2002) and as-rigid-as-possible refinement (Liu et al., 2008). The `uvunwrap` crate does this.
 //!
 //! Practice:
-//! * A mesh is unwrapped alone and without regard to its size on any page, so once, in parallel, and cancellable; its
-//!   charts are measured here and packed by [`super::arrange`].
-//! * Positions are taken relative to the middle of the mesh in `f64`, and brought to the size of one by a power of two, so
-//!   that map coordinates and odd units neither lose digits nor meet any absolute epsilon.
-//! * A height field (every normal well within 90 degrees of one axis) is flattened by projection: least squares on a
-//!   terrain of 100,000 triangles takes half a minute, and gains nothing. Other large meshes get a limit on chart area, for
-//!   the time it takes grows faster than the chart.
-//! * Triangles too thin for `f32` texture coordinates collapse onto a corner of a neighbour. Should all else fail, every
-//!   triangle is a chart of its own.
+//! * A mesh is unwrapped once, independent of its size on any page; meshes are unwrapped in parallel and the work can
+//!   be cancelled. Charts are measured here and packed by [`super::arrange`].
+//! * Positions are taken relative to the middle of the mesh in `f64` and scaled by a power of two to a size of about
+//!   one, so that map coordinates lose no digits and absolute epsilons have no effect.
+//! * A height field (all normals well within 90 degrees of one axis) is flattened by projection: least squares on a
+//!   terrain of 100,000 triangles takes half a minute and gives no better result. Other large meshes get a limit on
+//!   chart area, because the solver's time grows faster than the chart.
+//! * Triangles too thin for `f32` texture coordinates collapse onto a corner of a neighbour. If unwrapping fails, every
+//!   triangle becomes a chart.
 
 use crate::scene::Mesh;
 use glam::{DVec2, DVec3};
 use uvunwrap::{Density, Error, MeshInput, Options, OutputMesh, Packing};
 
-/// Meshes from this size on are tried as a height field.
+/// Least number of triangles for the height field test.
 const HEIGHT_FIELD_TRIANGLES: usize = 1_000;
-/// Least cosine between a height field's axis and its triangles' normals: their texels stretch by at most its inverse.
+/// Least cosine between a height field's axis and its triangles' normals: texels stretch by at most its inverse.
 const HEIGHT_FIELD_COS: f64 = 0.2;
-/// About how many triangles a chart of a large mesh may have.
+/// Approximate number of triangles in a chart of a large mesh.
 const CHART_TRIANGLES: usize = 4_000;
 
-/// Marks a vertex that no chart has yet.
+/// Marks a vertex without a chart.
 const NO_CHART: u32 = u32::MAX;
-/// About how many pairs may be compared to find homes for stray vertices.
+/// Approximate bound on the pairs compared to find the nearest charted vertex of uncharted ones.
 const NEAREST_WORK: usize = 100_000_000;
 
-/// A mesh in charts, each flattened in its own frame.
+/// A mesh cut into charts, each flattened in its own frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Charts {
     /// For each new vertex, the mesh vertex it copies.
     pub vertices: Vec<u32>,
     /// Three per triangle of the mesh, in its order, into `vertices`.
     pub indices: Vec<u32>,
-    /// For each new vertex, its place in its chart's box, in units of object space; the box starts at the origin.
+    /// For each new vertex, its position in its chart's bounding box, in units of object space from the box's corner.
     pub points: Vec<DVec2>,
     /// For each new vertex, its chart.
     pub chart_of: Vec<u32>,
-    /// Extent of each chart's box, in units of object space.
+    /// Size of each chart's bounding box, in units of object space.
     pub sizes: Vec<DVec2>,
-    /// Triangles by chart.
+    /// Triangles, sorted by chart.
     by_chart: Vec<u32>,
     /// Where each chart's triangles start in `by_chart`; one more at the end.
     first_of: Vec<u32>,
@@ -66,7 +66,7 @@ impl Charts {
         self
     }
 
-    /// Area of all triangles, flattened.
+    /// Total area of the flattened triangles, in square units of object space.
     pub fn area(&self) -> f64 {
         let area = |t: &[u32]| {
             let [a, b, c] = [0, 1, 2].map(|k| self.points[t[k] as usize]);
@@ -76,7 +76,7 @@ impl Charts {
     }
 }
 
-/// Unwraps a mesh. `keep_going` is asked now and then; `None` says that it answered false.
+/// Unwraps a mesh. `keep_going` is called repeatedly; returns `None` if it returned false.
 pub(super) fn unwrap(mesh: &Mesh, keep_going: &(dyn Fn() -> bool + Sync)) -> Option<Charts> {
     if mesh.indices.is_empty() {
         return Some(Charts::default());
@@ -89,7 +89,7 @@ pub(super) fn unwrap(mesh: &Mesh, keep_going: &(dyn Fn() -> bool + Sync)) -> Opt
     }
 }
 
-/// Positions around the middle of the mesh, at most 1 in any axis, and the power of two they were divided by.
+/// Positions relative to the middle of the mesh, at most 1 along each axis, and the power of two that divided them.
 fn normalise(mesh: &Mesh) -> (Vec<[f32; 3]>, f64) {
     let corners = mesh.indices.iter().map(|&i| mesh.positions[i as usize]);
     let low = corners.clone().reduce(|a, b| a.min(b)).unwrap_or_default();
@@ -101,7 +101,7 @@ fn normalise(mesh: &Mesh) -> (Vec<[f32; 3]>, f64) {
     (mesh.positions.iter().map(place).collect(), unit)
 }
 
-/// Runs `uvunwrap`; returns its mesh, and the size of the box that its coordinates are relative to.
+/// Runs `uvunwrap`; returns its mesh, and the size of the page that its coordinates are relative to.
 fn generate(
     mesh: &Mesh,
     positions: &[[f32; 3]],
@@ -124,7 +124,7 @@ fn generate(
     Ok((atlas.meshes.swap_remove(0), extent))
 }
 
-/// A density at which `uvunwrap`'s own packing, which is not used, costs little: four texels a triangle.
+/// A density at which `uvunwrap`'s own packing, whose result is not used, is fast: four texels per triangle.
 fn packing_density(triangles: f64, area: f64) -> f32 {
     let density = (4.0 * triangles / area).sqrt() as f32;
     if density.is_finite() && density > 0.0 { density.min(1e6) } else { 1.0 }
@@ -134,7 +134,7 @@ fn surface_area(positions: &[[f32; 3]], indices: &[u32]) -> f64 {
     indices.chunks_exact(3).map(|t| cross(positions, t).length() * 0.5).sum()
 }
 
-/// Normal of a triangle, twice its area long.
+/// Normal of a triangle with twice its area as length.
 fn cross(positions: &[[f32; 3]], triangle: &[u32]) -> DVec3 {
     let [a, b, c] = [0, 1, 2].map(|k| DVec3::from(positions[triangle[k] as usize].map(f64::from)));
     (b - a).cross(c - a)
@@ -161,7 +161,7 @@ fn height_field(positions: &[[f32; 3]], indices: &[u32]) -> Option<Vec<[f32; 2]>
     Some(positions.iter().map(project).collect())
 }
 
-/// Sorts the output into charts with boxes of their own. `extent` is the size of its page in units of object space.
+/// Splits the output into charts with their own bounding boxes. `extent` is the page's size in units of object space.
 fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
     let first = output.vertices.iter().filter_map(|v| v.chart).min().unwrap_or(0);
     let count = output.vertices.iter().filter_map(|v| v.chart).max().map_or(0, |last| last - first + 1);
@@ -190,23 +190,23 @@ fn measure(mesh: &Mesh, output: &OutputMesh, extent: DVec2) -> Charts {
     charts
 }
 
-/// Vertices of triangles without area and without charted neighbours go to where the nearest charted vertex lies, a whole
-/// triangle to one point, so that it does not stretch across charts.
+/// Moves vertices without a chart (of triangles without area and without charted neighbours) to the nearest charted
+/// vertex. A triangle moves to a single point, so that it does not stretch across charts.
 fn place_uncharted(mesh: &Mesh, charts: &mut Charts) {
-    let (charted, strays): (Vec<u32>, Vec<u32>) =
+    let (charted, uncharted): (Vec<u32>, Vec<u32>) =
         (0..charts.vertices.len() as u32).partition(|&v| charts.chart_of[v as usize] != NO_CHART);
-    let stride = (strays.len() * charted.len() / NEAREST_WORK).max(1);
+    let stride = (uncharted.len() * charted.len() / NEAREST_WORK).max(1);
     let place = |charts: &Charts, v: u32| mesh.positions[charts.vertices[v as usize] as usize].as_dvec3();
     for corner in (0..charts.indices.len()).step_by(3) {
         let triangle = [0, 1, 2].map(|k| charts.indices[corner + k]);
         if triangle.iter().all(|&v| charts.chart_of[v as usize] != NO_CHART) {
             continue;
         }
-        let settled = triangle.iter().copied().find(|&v| charts.chart_of[v as usize] != NO_CHART);
+        let own = triangle.iter().copied().find(|&v| charts.chart_of[v as usize] != NO_CHART);
         let from = place(charts, triangle[0]);
         let distance = |v: &u32| place(charts, *v).distance_squared(from);
         let nearest = || charted.iter().copied().step_by(stride).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let Some(target) = settled.or_else(nearest) else { return };
+        let Some(target) = own.or_else(nearest) else { return };
         for v in triangle.map(|v| v as usize) {
             if charts.chart_of[v] == NO_CHART {
                 charts.points[v] = charts.points[target as usize];
@@ -216,7 +216,7 @@ fn place_uncharted(mesh: &Mesh, charts: &mut Charts) {
     }
 }
 
-/// A mesh without any area: all of it is one point.
+/// A mesh without area: a single chart that is a point.
 fn one_point(mesh: &Mesh) -> Charts {
     Charts {
         vertices: (0..mesh.positions.len() as u32).collect(),
@@ -228,7 +228,7 @@ fn one_point(mesh: &Mesh) -> Charts {
     }
 }
 
-/// Every triangle a chart, its first edge along u.
+/// Makes every triangle a chart, with its first edge along u.
 fn each_triangle_alone(mesh: &Mesh) -> Charts {
     let mut charts = Charts::default();
     for (chart, triangle) in mesh.indices.chunks_exact(3).enumerate() {

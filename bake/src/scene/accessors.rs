@@ -1,7 +1,7 @@
 //! Accessors: typed arrays in buffers, strided, normalised, sparse, or all zero.
 //!
 //! Based on: Khronos Group, *glTF 2.0 Specification*, sections 3.6.2.2 to 3.6.2.4. Every bound is checked here, against
-//! the bytes that exist rather than those that the file declares.
+//! the bytes that exist, not those that the file declares.
 
 use super::{
     LoadError,
@@ -28,7 +28,7 @@ enum Component {
     F32,
 }
 
-/// Elements as they lie in a buffer: `count` of `size` bytes, `stride` bytes apart. All of them are inside `bytes`.
+/// Elements in a buffer: `count` of `size` bytes, `stride` bytes apart. All of them are inside `bytes`.
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -57,7 +57,7 @@ impl Component {
         }
     }
 
-    /// The value as it stands.
+    /// The value before normalisation.
     fn plain(self, b: &[u8]) -> f32 {
         match (self, b) {
             (Self::I8, &[a, ..]) => f32::from(a as i8),
@@ -70,7 +70,7 @@ impl Component {
         }
     }
 
-    /// What a stored value is divided by when its accessor is normalised.
+    /// Divisor of normalised values.
     fn range(self) -> f32 {
         match self {
             Self::I8 => 127.0,
@@ -105,7 +105,7 @@ fn lanes_of(shape: &str) -> Option<usize> {
 }
 
 impl<'a> Reader<'a> {
-    /// Numbers in groups of `N`, normalised integers brought to their range.
+    /// Elements of `N` numbers; normalised integers become fractions in [0, 1] or [-1, 1].
     pub fn floats<const N: usize>(&self, index: usize) -> Result<Vec<[f32; N]>, LoadError> {
         let (accessor, component) = self.typed::<N>(index)?;
         if !accessor.normalized || component == Component::F32 {
@@ -115,7 +115,7 @@ impl<'a> Reader<'a> {
         self.values(index, &accessor, component, |b| (component.plain(b) / range).max(-1.0))
     }
 
-    /// Unsigned integers in groups of `N`.
+    /// Elements of `N` unsigned integers.
     pub fn integers<const N: usize>(&self, index: usize) -> Result<Vec<[u32; N]>, LoadError> {
         let (accessor, component) = self.typed::<N>(index)?;
         match component {
@@ -126,13 +126,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// How many numbers an element has.
+    /// Number of components of an element.
     pub fn lanes(&self, index: usize) -> Result<usize, LoadError> {
         let accessor: document::JsonAccessor = self.doc.get(index)?;
         lanes_of(&accessor.shape).ok_or_else(|| wrong(index, format!("unknown type {}", accessor.shape)))
     }
 
-    /// Whether the accessor has bytes of its own, rather than being all zero.
+    /// Whether the accessor has data; without, all its elements are zero.
     pub fn has_data(&self, index: usize) -> bool {
         let accessor = self.doc.get::<document::JsonAccessor>(index);
         accessor.is_ok_and(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
@@ -143,7 +143,10 @@ impl<'a> Reader<'a> {
         let component = component(index, accessor.component_type)?;
         if accessor.count >= u64::from(u32::MAX) {
             self.budget.take(accessor.count, 4 * N as u64, || place::<document::JsonAccessor>(index))?;
-            return Err(wrong(index, format!("it has {} elements, more than an index can name", accessor.count)));
+            return Err(wrong(
+                index,
+                format!("it has {} elements, more than a 32-bit index can address", accessor.count),
+            ));
         }
         match self.lanes(index)? == N {
             true => Ok((accessor, component)),

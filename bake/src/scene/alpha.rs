@@ -1,12 +1,12 @@
-//! Where a cut surface is solid: alpha sampled at the nearest texel of the image's first level.
+//! Alpha masks: alpha is sampled at the nearest texel of the image's first mip level.
 //!
-//! Nearest, not filtered, so that every tracer, every shader and every closed-form engine agrees about where a leaf ends:
-//! on the borders of the image's texels. The same formula stands in `shaders/src/alpha.wgsl`.
+//! It is not filtered, so that all tracers, shaders and closed-form engines agree about where a leaf ends: on the
+//! borders of the image's texels. The alpha shader in `shaders/src/wgsl` has the same formula.
 
 use super::{Alpha, Image, Material, Mesh, Scene, TextureRef, Wrap};
 use glam::{Vec2, Vec3};
 
-/// Brings a texel index back into `0..size`.
+/// Maps any texel index into `0..size`.
 pub fn wrap_texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     let size = i64::from(size.max(1));
     if (0..size).contains(&index) {
@@ -23,7 +23,7 @@ pub fn wrap_texel(index: i64, size: u32, wrap: Wrap) -> u32 {
     wrapped as u32
 }
 
-/// The texel that holds an image coordinate (v from the top): indices x and y.
+/// Column and row of the texel that holds an image coordinate (v from the top).
 pub fn nearest_texel(image_uv: Vec2, size: [u32; 2], wrap: [Wrap; 2]) -> [u32; 2] {
     let index = |coordinate: f32, size: u32| (coordinate * size as f32).floor().clamp(-1e9, 1e9) as i64;
     [wrap_texel(index(image_uv.x, size[0]), size[0], wrap[0]), wrap_texel(index(image_uv.y, size[1]), size[1], wrap[1])]
@@ -53,15 +53,16 @@ where
     a * (1.0 - u - v) + b * u + c * v
 }
 
-/// Blends the alphas of three corners. Where they are equal the blend is just that: weights add up to one but for rounding,
-/// and a cutoff of 1 would otherwise find holes in what is solid all over.
+/// Blends the alphas of three corners. Equal alphas are returned unblended: weights add up to one only up to rounding,
+/// and with a cutoff of 1 a solid surface would otherwise get holes.
 pub fn blend_alphas(corners: [f32; 3], weights: [f32; 2]) -> f32 {
     let [a, b, c] = corners;
     if a == b && b == c { a } else { blend(corners, weights) }
 }
 
 impl Scene {
-    /// Whether a point of a triangle of an instance is solid; `barycentric` weighs its second and third corner.
+    /// Whether a point of an instance's triangle is solid. `barycentric` are the weights of the second and third
+    /// corner.
     pub fn is_solid_at(&self, instance: usize, triangle: usize, barycentric: [f32; 2]) -> bool {
         let material = self.material(instance);
         match material.alpha {
@@ -95,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wrapping_brings_every_index_back() {
+    fn wrapping_maps_every_index_into_the_image() {
         let wrapped = |wrap| (-5..9).map(|i| wrap_texel(i, 4, wrap)).collect::<Vec<_>>();
         assert_eq!(wrapped(Wrap::Repeat), [3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0]);
         assert_eq!(wrapped(Wrap::Clamp), [0, 0, 0, 0, 0, 0, 1, 2, 3, 3, 3, 3, 3, 3]);
@@ -106,7 +107,7 @@ mod tests {
     fn equal_alphas_blend_to_themselves_whatever_the_weights() {
         let weights = |i: u32| [(i % 97) as f32 / 97.0, (i % 89) as f32 / 89.0 * (1.0 - (i % 97) as f32 / 97.0)];
         assert!((0..10_000).all(|i| blend_alphas([1.0; 3], weights(i)) == 1.0));
-        assert!((0..10_000).any(|i| blend([1.0; 3], weights(i)) < 1.0), "or there is nothing to guard against");
+        assert!((0..10_000).any(|i| blend([1.0; 3], weights(i)) < 1.0), "without this the test would prove nothing");
     }
 
     #[test]

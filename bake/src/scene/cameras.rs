@@ -1,4 +1,4 @@
-//! Cameras, and the directional light that stands in for the sun when no place is given.
+//! Cameras, and the directional light that serves as the sun if no place is given.
 
 use super::{
     Camera,
@@ -9,7 +9,8 @@ use super::{
 use glam::{DMat4, DVec3};
 use serde_json::Value;
 
-/// Perspective cameras under drawn nodes. One that cannot be used is left out with a warning: it only frames pictures.
+/// Perspective cameras under drawn nodes. One that cannot be used is left out with a warning, since a bake does not
+/// need it.
 pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<Camera> {
     let mut cameras = Vec::new();
     for (node, (placed, &index)) in tree.nodes.iter().zip(&tree.file_index).enumerate() {
@@ -34,7 +35,7 @@ pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut W
     cameras
 }
 
-/// The node's place and view direction without its scale, shear or mirroring.
+/// The node's position and view direction, without its scale, shear or mirroring.
 fn rigid(world_from_node: &DMat4, centre_m: DVec3) -> DMat4 {
     let back = world_from_node.z_axis.truncate().normalize_or(DVec3::Z);
     let right = world_from_node.y_axis.truncate().cross(back).normalize_or(back.any_orthonormal_vector());

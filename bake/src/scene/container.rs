@@ -1,7 +1,7 @@
-//! The outer layer of a scene file: GLB chunks or bare JSON, told apart by their first bytes.
+//! The container of a scene file: GLB chunks or plain JSON, told apart by their first bytes.
 //!
-//! Based on: Khronos Group, *glTF 2.0 Specification*, section 4 (GLB file format). More lenient than it in three ways
-//! that harm nobody: trailing bytes and unknown chunks are passed over, and a byte order mark is skipped.
+//! Based on: Khronos Group, *glTF 2.0 Specification*, section 4 (GLB file format). More lenient in three ways: trailing
+//! bytes, unknown chunks and a byte order mark are ignored.
 
 use super::{LoadError, limits::MemoryBudget};
 use serde_json::Value;
@@ -15,7 +15,7 @@ pub(super) struct Container<'a> {
     pub binary: Option<&'a [u8]>,
 }
 
-/// Reads a whole regular file, if it fits into the budget.
+/// Reads a regular file completely, if it fits into the budget.
 pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
     let fail = |cause: std::io::Error| LoadError::read(path, &cause, advice);
     let meta = std::fs::metadata(path).map_err(fail)?;
@@ -30,7 +30,7 @@ pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &'static str
 }
 
 impl<'a> Container<'a> {
-    /// Splits the bytes of a file.
+    /// Splits a file into its parts and parses the JSON.
     pub fn parse(path: &Path, bytes: &'a [u8], budget: &MemoryBudget) -> Result<Self, LoadError> {
         let (json, binary) = match bytes {
             [] => return Err(not_gltf(path, "it is empty")),
@@ -45,7 +45,7 @@ impl<'a> Container<'a> {
     }
 }
 
-/// A parsed value takes several times its text: `0,` is two characters and 32 bytes.
+/// A parsed value takes several times the memory of its text: `0,` is two characters and 32 bytes.
 const JSON_BYTES_PER_CHARACTER: u64 = 16;
 
 fn not_gltf(path: &Path, cause: impl Into<String>) -> LoadError {
@@ -56,13 +56,13 @@ fn truncated(path: &Path, cause: impl Into<String>) -> LoadError {
     LoadError::Truncated { path: path.to_owned(), cause: cause.into() }
 }
 
-/// Takes a little-endian word off the front.
+/// Splits off the first 32-bit little-endian word.
 fn word<'a>(bytes: &'a [u8]) -> Option<(u32, &'a [u8])> {
     let (head, tail): (&'a [u8; 4], &'a [u8]) = bytes.split_first_chunk()?;
     Some((u32::from_le_bytes(*head), tail))
 }
 
-/// `rest` is what follows the magic.
+/// `rest` is the file after its first four bytes.
 fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), LoadError> {
     let cut = || truncated(path, format!("it ends within its header, after {} bytes", rest.len() + 4));
     let (version, rest) = word(rest).ok_or_else(cut)?;
@@ -86,10 +86,10 @@ fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a
     Ok((json, None))
 }
 
-/// A kind and its data.
+/// A chunk's type and its data.
 type Chunk<'a> = ([u8; 4], &'a [u8]);
 
-/// Takes the next chunk off the front. Fewer than eight bytes are padding.
+/// Splits off the next chunk. Fewer than eight bytes are padding.
 fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<Chunk<'a>>, LoadError> {
     let Some((length, after)) = word(rest) else { return Ok(None) };
     let Some((kind, after)) = word(after) else { return Ok(None) };
@@ -101,7 +101,7 @@ fn chunk<'a>(path: &Path, rest: &mut &'a [u8]) -> Result<Option<Chunk<'a>>, Load
 }
 
 fn parse_json(path: &Path, json: &[u8]) -> Result<Value, LoadError> {
-    // Exporters pad the chunk with spaces as they should, and some with zeros.
+    // The chunk is padded with spaces; some exporters use zeros.
     let json = json.trim_ascii();
     let json = json.iter().rposition(|&b| b != 0).map_or(&[][..], |last| json.get(..=last).unwrap_or(json));
     if json.first() != Some(&b'{') {
@@ -113,23 +113,24 @@ fn parse_json(path: &Path, json: &[u8]) -> Result<Value, LoadError> {
         column: error.column(),
         cause: strip_position(&error.to_string()),
     });
-    parsed.map(whole_numbers)
+    parsed.map(integers_from_floats)
 }
 
-/// JSON knows one kind of number, so `24.0` may stand for an index. The parser has bounded the depth.
-fn whole_numbers(value: Value) -> Value {
+/// Turns floats without a fraction into integers, since `24.0` is a valid index in JSON. The parser has bounded the
+/// depth.
+fn integers_from_floats(value: Value) -> Value {
     match value {
         Value::Number(number) => match number.as_f64().filter(|x| number.is_f64() && x.fract() == 0.0) {
             Some(x) if (1.0..1e15).contains(&x) || x.to_bits() == 0 => Value::from(x as u64),
             _ => Value::Number(number),
         },
-        Value::Array(list) => list.into_iter().map(whole_numbers).collect(),
-        Value::Object(map) => map.into_iter().map(|(key, value)| (key, whole_numbers(value))).collect(),
+        Value::Array(list) => list.into_iter().map(integers_from_floats).collect(),
+        Value::Object(map) => map.into_iter().map(|(key, value)| (key, integers_from_floats(value))).collect(),
         other => other,
     }
 }
 
-/// serde_json ends its messages with the position, which our message states already.
+/// Removes the position at the end of serde_json's messages, since our own message states it.
 pub(super) fn strip_position(message: &str) -> String {
     message.split(" at line ").next().unwrap_or(message).to_owned()
 }

@@ -1,9 +1,9 @@
-//! The parts of glTF's JSON that a bake reads, and nothing else of it.
+//! The parts of glTF's JSON that a bake reads.
 //!
-//! An item is parsed when it is asked for, not before. So whatever is wrong with a file's animations, samplers or
-//! unused accessors cannot stop a bake, and what is wrong with something that is used is reported by its place. That is
-//! why the types of the `gltf` crate are not used here: they parse (and validate) all of a file or none of it, hold node
-//! matrices in `f32`, and index out of range when the validation is left out.
+//! An item is parsed when it is first needed. So errors in a file's animations, samplers or unused accessors do not
+//! stop a bake, and an error in something that is used is reported with its place. The types of the `gltf` crate are
+//! not used because they parse and validate a whole file or none of it, hold node matrices in `f32`, and index out of
+//! range without that validation.
 
 use super::{LoadError, container::strip_position};
 use serde::{Deserialize, de::DeserializeOwned};
@@ -15,13 +15,13 @@ pub(super) struct Document {
     pub root: Value,
 }
 
-/// Something that lives in one of the lists at the top level.
+/// An element of one of the lists at the top level.
 pub(super) trait ListItem: DeserializeOwned {
-    /// The list's name.
+    /// The list's key in the file.
     const LIST: &'static str;
 }
 
-/// `accessors[12]`, for messages.
+/// Where an item is, for messages: `accessors[12]`.
 pub(super) fn place<T: ListItem>(index: usize) -> String {
     format!("{}[{index}]", T::LIST)
 }
@@ -37,7 +37,7 @@ impl Document {
             .map_err(|error| LoadError::structure(place::<T>(index), strip_position(&error.to_string())))
     }
 
-    /// How many items there are.
+    /// Length of the item's list; 0 if the file has none.
     pub fn count<T: ListItem>(&self) -> usize {
         self.list(T::LIST).len()
     }
@@ -46,7 +46,7 @@ impl Document {
         self.root.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
     }
 
-    /// Strings of a list at the top level.
+    /// The strings in a list at the top level.
     pub fn strings(&self, name: &str) -> impl Iterator<Item = &str> {
         self.list(name).iter().filter_map(Value::as_str)
     }
@@ -57,8 +57,9 @@ macro_rules! items {
 }
 
 items! {
-    JsonAccessor = "accessors", JsonBuffer = "buffers", JsonBufferView = "bufferViews", JsonCamera = "cameras", JsonImage = "images",
-    JsonMaterial = "materials", JsonMesh = "meshes", JsonNode = "nodes", JsonSampler = "samplers", JsonSceneRoots = "scenes",
+    JsonAccessor = "accessors", JsonBuffer = "buffers", JsonBufferView = "bufferViews", JsonCamera = "cameras",
+    JsonImage = "images", JsonMaterial = "materials", JsonMesh = "meshes", JsonNode = "nodes",
+    JsonSampler = "samplers", JsonSceneRoots = "scenes",
     JsonSkin = "skins", JsonTexture = "textures",
 }
 
@@ -266,7 +267,8 @@ pub(super) struct Perspective {
 }
 
 impl JsonMaterial {
-    /// Factor and texture of the base colour: metallic-roughness, else the older specular-glossiness model's diffuse colour.
+    /// Factor and texture of the base colour: metallic-roughness, else the older specular-glossiness model's diffuse
+    /// colour.
     pub fn base_color(self) -> ([f32; 4], Option<TextureInfo>) {
         let standard = self.pbr_metallic_roughness.unwrap_or_default();
         let has_standard = standard.base_color_factor.is_some() || standard.base_color_texture.is_some();

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene. Every message says what is wrong, where in the file, and what to do next.
+//! Why a scene is not loaded. Every message says what is wrong, where in the file, and what to do next.
 
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -11,13 +11,17 @@ pub enum LoadError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The operating system's message.
         cause: String,
         /// What to do next.
         advice: &'static str,
     },
-    /// The file is something else.
-    #[error("{path} is not a glTF scene: {cause}; export the scene as glTF 2.0 (.glb or .gltf), for example from Blender", path = .path.display())]
+    /// The file is not glTF.
+    #[error(
+        "{path} is not a glTF scene: {cause}; \
+         export the scene as glTF 2.0 (.glb or .gltf), for example from Blender",
+        path = .path.display()
+    )]
     NotGltf {
         /// The file.
         path: PathBuf,
@@ -43,7 +47,10 @@ pub enum LoadError {
         advice: &'static str,
     },
     /// The JSON does not parse.
-    #[error("{path}: its JSON is wrong at line {line}, column {column}: {cause}; export it again or repair it there", path = .path.display())]
+    #[error(
+        "{path}: its JSON is wrong at line {line}, column {column}: {cause}; export it again or repair it there",
+        path = .path.display()
+    )]
     Json {
         /// The file.
         path: PathBuf,
@@ -51,12 +58,13 @@ pub enum LoadError {
         line: usize,
         /// Column within the line, from 1.
         column: usize,
-        /// What the parser said.
+        /// The parser's message.
         cause: String,
     },
-    /// The JSON parses, and what it says cannot be.
+    /// The JSON parses but contradicts itself or the format.
     #[error(
-        "{place}: {problem}; export the scene again, or see what the Khronos validator says of it: https://github.khronos.org/glTF-Validator"
+        "{place}: {problem}; export the scene again, or check it with the Khronos validator: \
+         https://github.khronos.org/glTF-Validator"
     )]
     Structure {
         /// Where in the file, for example `accessors[12]`.
@@ -64,7 +72,7 @@ pub enum LoadError {
         /// What is wrong there.
         problem: String,
     },
-    /// The file demands an extension that sunbake does not read.
+    /// The file requires an extension that sunbake does not read.
     #[error("the scene requires the extension {extension}, which sunbake does not read; {advice}")]
     Extension {
         /// Its name.
@@ -74,7 +82,8 @@ pub enum LoadError {
     },
     /// The scene names a file that sunbake will not open.
     #[error(
-        "{place} names \"{uri}\", {reason}; put the file beside the scene and name it by a relative path, or pack everything into one .glb"
+        "{place} names \"{uri}\", {reason}; put the file beside the scene and name it by a relative path, \
+         or pack everything into one .glb"
     )]
     Outside {
         /// Where in the file.
@@ -86,8 +95,8 @@ pub enum LoadError {
     },
     /// More memory would be needed than is allowed.
     #[error(
-        "{what} needs {} more, and of the {} allowed only {} are left; raise --max-memory, or simplify the scene",
-        size(*needed_bytes), size(*limit_bytes), size(*left_bytes)
+        "{what} needs {} more, but only {} of the {} allowed are left; raise --max-memory, or simplify the scene",
+        size(*needed_bytes), size(*left_bytes), size(*limit_bytes)
     )]
     TooLarge {
         /// What would need it.
@@ -99,9 +108,10 @@ pub enum LoadError {
         /// The limit.
         limit_bytes: u64,
     },
-    /// An image that shadows depend on cannot be had.
+    /// An image that an alpha mask needs cannot be used.
     #[error(
-        "{place} cuts its surface by the alpha of {image}, which cannot be used: {cause}; its shadow would be wrong, so replace the image by a PNG, or set the material's alphaMode to OPAQUE"
+        "{place} has an alpha mask in {image}, which cannot be used: {cause}; its shadow would be wrong, \
+         so replace the image by a PNG, or set the material's alphaMode to OPAQUE"
     )]
     AlphaImage {
         /// Which material.
@@ -111,10 +121,10 @@ pub enum LoadError {
         /// Why not.
         cause: String,
     },
-    /// Nodes form a ring.
+    /// Nodes form a cycle.
     #[error("nodes[{node}] is its own ancestor; remove it from the children of nodes[{parent}]")]
     NodeCycle {
-        /// A node of the ring.
+        /// A node of the cycle.
         node: usize,
         /// The node that names it as its child.
         parent: usize,
@@ -124,12 +134,12 @@ pub enum LoadError {
     NoTriangles {
         /// The file.
         path: PathBuf,
-        /// What there was instead.
+        /// What was found instead.
         cause: String,
     },
 }
 
-/// A number of bytes as people say it.
+/// A number of bytes with a readable unit.
 fn size(bytes: u64) -> String {
     match bytes {
         0..10_000 => format!("{bytes} bytes"),
@@ -150,7 +160,7 @@ pub enum ErrorClass {
 }
 
 impl LoadError {
-    /// What kind of error this is.
+    /// The class that decides the exit code.
     pub fn class(&self) -> ErrorClass {
         match self {
             Self::Read { .. } => ErrorClass::Io,

@@ -1,8 +1,8 @@
 //! Every triangle of every instance, in bake space, in one array.
 //!
-//! This array is the one truth about where surfaces are: rays are traced against it, texels are sampled on it, and
-//! frames are drawn from it. Positions are computed once, in `f64`, and rounded once, so a point computed on a triangle
-//! lies on that same triangle for the tracer.
+//! Rays are traced against this array, texels are sampled on it, and frames are drawn from it. Positions are computed
+//! once, in `f64`, and rounded once to `f32`, so a point computed on a triangle lies on that same triangle for the
+//! tracer. The doc of [`crate::scene`] explains the spaces.
 
 use super::{Alpha, Scene};
 use glam::{DVec3, Vec3};
@@ -16,7 +16,7 @@ pub struct Geometry {
     pub first_triangle: Vec<u32>,
     /// For each triangle, its instance.
     pub instance: Vec<u32>,
-    /// For each instance, +1 or -1: what turns the corners' cross product to the front.
+    /// For each instance, the sign that turns the corners' cross product to the front: -1 if the instance is mirrored.
     front_sign: Vec<f64>,
 }
 
@@ -30,8 +30,8 @@ pub struct SurfaceTriangle {
 }
 
 impl Geometry {
-    /// Places every instance. Surfaces that are [`Alpha::Invisible`] keep their slots, so that indices stay aligned with the
-    /// scene, but see [`Geometry::is_solid`].
+    /// Transforms every instance. Triangles of [`Alpha::Invisible`] surfaces are kept, so that indices stay aligned
+    /// with the scene; [`Geometry::is_solid`] tells them apart.
     pub fn new(scene: &Scene) -> Self {
         let count = scene.triangle_count();
         let mut geometry = Self {
@@ -58,7 +58,7 @@ impl Geometry {
         geometry
     }
 
-    /// Which instance, and which of its triangles, a flat index means.
+    /// The instance, and the triangle within its mesh, of a flat index.
     pub fn surface(&self, triangle: usize) -> SurfaceTriangle {
         let instance = self.instance[triangle] as usize;
         SurfaceTriangle { instance, mesh_triangle: triangle - self.first_triangle[instance] as usize }
@@ -77,12 +77,12 @@ impl Geometry {
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// Whether an instance's surface is there at all: its material is not air.
+    /// Whether an instance is visible to rays at all: its material is not [`Alpha::Invisible`].
     pub fn is_solid_instance(&self, scene: &Scene, instance: usize) -> bool {
         scene.material(instance).alpha != Alpha::Invisible
     }
 
-    /// Whether the triangle blocks light at all (its material is not air, its corners do not coincide).
+    /// Whether the triangle can block light: its instance is solid and its corners do not coincide.
     pub fn is_solid(&self, scene: &Scene, triangle: usize) -> bool {
         let instance = self.instance[triangle] as usize;
         self.is_solid_instance(scene, instance) && self.normal(triangle) != DVec3::ZERO

@@ -1,7 +1,7 @@
-//! Base colour images: found by their first bytes, measured before they are decoded, decoded on all cores.
+//! Base colour images: format from their first bytes, size checked before decoding, decoded on all cores.
 //!
-//! Only images that some drawn material uses for its base colour are decoded. The others are read, if they can be,
-//! because the scene's hash covers every file that it names.
+//! Only images that a drawn material uses for its base colour are decoded. The others are read, if possible, because
+//! the scene's hash covers every file that it names.
 
 use super::{
     Image, LoadError,
@@ -16,22 +16,22 @@ use std::{
     io::Cursor,
 };
 
-/// What became of an image of the file.
+/// The result for an image of the file.
 pub(super) enum Decoded {
-    /// It stands in the scene's list.
+    /// Decoded, at `index` in the scene's list; alphas are 0 to 255.
     Ready { index: usize, lowest_alpha: u8, highest_alpha: u8 },
     /// It cannot be used.
     Failed { name: String, cause: String, has_no_alpha: bool },
 }
 
-/// An image's bytes and what their header says.
+/// A needed image, not decoded yet.
 struct Encoded {
     file_index: usize,
     name: String,
     bytes: Vec<u8>,
 }
 
-/// Reads the needed images, and hashes all of them that are files of their own.
+/// Reads the needed images, and hashes all that are separate files.
 pub(super) fn read(
     doc: &Document,
     buffers: &Buffers,
@@ -51,7 +51,7 @@ pub(super) fn read(
                 decoded.insert(file_index, Decoded::Failed { name, cause: error.to_string(), has_no_alpha: false });
             }
             Ok(bytes) if is_needed => {
-                charge(&bytes, &name, budget)?;
+                reserve_memory(&bytes, &name, budget)?;
                 encoded.push(Encoded { file_index, name, bytes });
             }
             _ => {}
@@ -72,7 +72,7 @@ pub(super) fn read(
     Ok((images, decoded))
 }
 
-/// `images[3] "bark.png"`.
+/// An image's place and name, for messages: `images[3] "bark.png"`.
 fn name(doc: &Document, index: usize) -> String {
     let place = place::<document::JsonImage>(index);
     let image: Option<document::JsonImage> = doc.get(index).ok();
@@ -98,8 +98,8 @@ fn bytes(
     }
 }
 
-/// A small file can hold a huge image, so its header is asked first.
-fn charge(bytes: &[u8], name: &str, budget: &MemoryBudget) -> Result<(), LoadError> {
+/// Takes the decoded image's memory from the budget. A small file can hold a huge image, so the header is read first.
+fn reserve_memory(bytes: &[u8], name: &str, budget: &MemoryBudget) -> Result<(), LoadError> {
     let Some((width, height)) = format_of(bytes).ok().and_then(|format| dimensions(bytes, format)) else {
         return Ok(());
     };
@@ -110,7 +110,7 @@ fn dimensions(bytes: &[u8], format: ImageFormat) -> Option<(u32, u32)> {
     ImageReader::with_format(Cursor::new(bytes), format).into_dimensions().ok()
 }
 
-/// PNG or JPEG, whatever the file calls it.
+/// PNG or JPEG, by content and not by name.
 fn format_of(bytes: &[u8]) -> Result<ImageFormat, String> {
     match image::guess_format(bytes) {
         Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => Ok(format),
@@ -146,7 +146,7 @@ fn decode_rgba(bytes: &[u8], format: ImageFormat) -> image::ImageResult<image::R
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let texels = dimensions(bytes, format).map_or(0, |(width, height)| u64::from(width) * u64::from(height));
     let mut limits = Limits::no_limits();
-    // Sixteen bits in four channels, twice, and tables.
+    // Four channels of sixteen bits, twice, and the decoder's tables.
     limits.max_alloc = Some(texels.saturating_mul(16).saturating_add(16 << 20));
     reader.limits(limits);
     Ok(reader.decode()?.into_rgba8())

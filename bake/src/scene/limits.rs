@@ -1,13 +1,13 @@
-//! Memory that loading may take, counted before it is taken.
+//! Memory that loading may take, counted before it is allocated.
 //!
-//! A file of a kilobyte can declare a thousand million vertices, so nothing is allocated for a count that a file states
-//! until the budget has agreed. What is counted is what loading keeps, plus what decoding needs at the same time; it is
-//! never handed back, so many primitives that share one large accessor add up as well.
+//! A file of one kilobyte can declare a thousand million vertices, so nothing is allocated for a count in the file
+//! before the budget allows it. The budget counts what loading keeps and what decoding needs at the same time. It is
+//! never given back, so many primitives that share one large accessor add up as well.
 
 use super::LoadError;
 use std::cell::Cell;
 
-/// Limits on what a scene may ask of the machine.
+/// Limits for loading a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LoadLimits {
     /// Memory for the file, its vertices, its images and the triangles it draws, in bytes. A scene that needs more is
@@ -22,7 +22,7 @@ impl Default for LoadLimits {
     }
 }
 
-/// What is left of the limit.
+/// The memory limit and what was taken of it.
 pub(super) struct MemoryBudget {
     limit: u64,
     used: Cell<u64>,
@@ -37,7 +37,7 @@ impl MemoryBudget {
         self.limit.saturating_sub(self.used.get())
     }
 
-    /// Takes `count` things of `size` bytes, or says what wanted them.
+    /// Takes `count * size` bytes; an error that names `what` if they exceed the limit.
     pub fn take(&self, count: u64, size: u64, what: impl FnOnce() -> String) -> Result<(), LoadError> {
         let needed = count.saturating_mul(size);
         if needed > self.left() {
@@ -53,14 +53,14 @@ impl MemoryBudget {
     }
 }
 
-/// Warnings, with equal ones gathered into one sentence.
+/// Warnings while loading. Equal sentences about several places are counted and reported once.
 #[derive(Default)]
 pub(super) struct WarningLog {
     entries: Vec<(String, String, usize)>,
 }
 
 impl WarningLog {
-    /// Notes that `sentence` is true of `place`.
+    /// Adds a warning: `sentence` is about `place`.
     pub fn warn(&mut self, sentence: impl Into<String>, place: impl Into<String>) {
         let sentence = sentence.into();
         match self.entries.iter_mut().find(|(known, _, _)| *known == sentence) {
@@ -69,7 +69,7 @@ impl WarningLog {
         }
     }
 
-    /// One sentence each, in the order they were first noted.
+    /// One line for each sentence, in the order of their first place.
     pub fn into_sentences(self) -> Vec<String> {
         let say = |(sentence, place, count)| match count {
             1 => format!("{place}: {sentence}"),

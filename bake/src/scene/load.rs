@@ -1,4 +1,4 @@
-//! From a file to a [`Scene`]: the flow of loading, one step a module.
+//! Loads a file into a [`Scene`]. Each step has a module of its own.
 
 use super::{
     Camera, Dropped, Instance, LoadError, LoadLimits, Mesh, Scene, Source,
@@ -24,9 +24,9 @@ use std::{
 ///
 /// # Errors
 ///
-/// Where the file cannot be read, is no glTF 2, contradicts itself in something that shadows depend on, requires an
-/// extension that is not supported, names files outside its folder, needs more memory than `limits` allow, or draws no
-/// triangles. What touches only the look is a warning in [`Scene::warnings`].
+/// If the file cannot be read, is not glTF 2, contradicts itself in data that shadows depend on, requires an
+/// unsupported extension, names files outside its folder, needs more memory than `limits` allow, or draws no triangles.
+/// Problems that affect only the look are [`Scene::warnings`].
 pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let budget = MemoryBudget::new(limits);
     let bytes = container::read_file(path, &budget, "check the path and its permissions")?;
@@ -61,7 +61,7 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
     let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, budget, &needed)?;
     let materials = materials::finish(drafts, &decoded, &drawn, &mut log)?;
     if doc.root.get("animations").is_some() {
-        log.warn("they are not played; every node stands where the file puts it", "animations");
+        log.warn("they are not played; every node has its rest pose", "animations");
     }
     let centre_m = bounds.rounded_centre();
     let cameras: Vec<Camera> = cameras::read(&doc, &tree, centre_m, &mut log);
@@ -81,10 +81,10 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
     })
 }
 
-/// What a drawn triangle takes later on, in geometry and BVH.
+/// Memory that a drawn triangle takes in geometry and BVH.
 const BYTES_PER_TRIANGLE: u64 = 128;
 
-/// Coordinates beyond this cannot be multiplied in `f32`, which tracing does.
+/// Largest coordinate: beyond it, products in `f32` overflow while tracing.
 const FARTHEST_M: f64 = 1e15;
 
 fn triangle_count(drawn: &DrawnMeshes, mesh: usize) -> u64 {
@@ -108,7 +108,7 @@ fn no_triangles(path: &Path, drawn: &DrawnMeshes, log: WarningLog) -> LoadError 
     LoadError::NoTriangles { path: path.to_owned(), cause: reasons.join("; ") }
 }
 
-/// A box in world space.
+/// A bounding box in world space, in metres.
 #[derive(Clone, Copy)]
 struct Bounds {
     low: DVec3,
@@ -144,7 +144,8 @@ impl Bounds {
     }
 }
 
-/// Leaves out draws whose coordinates overflow, then meshes without a draw. The bounds of what is left, if anything is.
+/// Removes draws whose coordinates overflow, then meshes that nothing draws. Returns the bounds of the rest; `None` if
+/// nothing is left.
 fn keep_placeable(drawn: &mut DrawnMeshes, tree: &NodeTree, log: &mut WarningLog) -> Option<Bounds> {
     let mut all: Option<Bounds> = None;
     let DrawnMeshes { draws, meshes, .. } = drawn;

@@ -1,8 +1,9 @@
-//! Materials, so far as shadows and the base colour need them.
+//! Materials, as far as shadows and the base colour need them.
 //!
-//! `BLEND` surfaces are cut at an alpha of one half. What `MASK` and `BLEND` come to is decided here by the range of alpha
-//! that a surface can have at all (factor times texture times vertex colour): always at or above the cutoff makes it
-//! opaque, so nothing has to sample it; a blended surface always below the cutoff is air.
+//! `BLEND` surfaces are read as alpha masks with a cutoff of one half. `MASK` and `BLEND` are simplified here, from the
+//! range of alpha that a surface can have (factor times texture times vertex colour): if alpha is never below the
+//! cutoff, the surface is opaque and nothing has to sample it; a blended surface that never reaches the cutoff is
+//! invisible.
 
 use super::{
     Alpha, LoadError, Material, TextureRef, Wrap,
@@ -14,7 +15,7 @@ use super::{
 use glam::{Mat3, Vec2, Vec3, Vec4};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Alpha at and above which a `BLEND` surface is solid.
+/// Least alpha at which a `BLEND` surface is solid.
 pub const BLEND_CUTOFF: f32 = 0.5;
 
 /// A material before its image is decoded: [`TextureRef::image`] is still an index into the file's images.
@@ -27,7 +28,7 @@ pub(super) struct DraftMaterial {
     is_blended: bool,
 }
 
-/// Reads the materials that are drawn, in file order and glTF's default material last, and numbers the meshes' so.
+/// Reads the drawn materials, in file order with glTF's default material last, and sets the meshes' material indices.
 pub(super) fn read(
     doc: &Document,
     drawn: &mut DrawnMeshes,
@@ -69,7 +70,7 @@ fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMate
     let (factor, texture) = file.base_color();
     material.base_color = Vec4::from_array(factor).clamp(Vec4::ZERO, Vec4::ONE);
     match texture.map(|info| texture_ref(doc, &info)) {
-        Some(Err(cause)) => lose_texture(&place, "its base colour texture", &cause, cutoff.is_some(), log)?,
+        Some(Err(cause)) => report_unusable_texture(&place, "its base colour texture", &cause, cutoff.is_some(), log)?,
         Some(Ok(texture)) => material.base_color_texture = Some(texture),
         None => {}
     }
@@ -90,14 +91,14 @@ fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String>
     };
     Ok(TextureRef {
         image,
-        // Set 2 and beyond stand in place of set 0: see `primitives`.
+        // Sets 2 and above replace set 0: see `primitives`.
         texcoord: usize::from(info.texcoord() == 1),
         image_from_texcoord: info.extensions.transform.as_ref().map_or(Mat3::IDENTITY, image_from_texcoord),
         wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]),
     })
 }
 
-/// `KHR_texture_transform`: scale, then a turn that is counter-clockwise to the eye (v points down), then the offset.
+/// `KHR_texture_transform`: scale, then a rotation that looks counter-clockwise (v points down), then the offset.
 fn image_from_texcoord(transform: &TextureTransform) -> Mat3 {
     let (sin, cos) = transform.rotation.unwrap_or_default().sin_cos();
     let turn = Mat3::from_cols(Vec3::new(cos, -sin, 0.0), Vec3::new(sin, cos, 0.0), Vec3::Z);
@@ -106,21 +107,27 @@ fn image_from_texcoord(transform: &TextureTransform) -> Mat3 {
     if matrix.is_finite() { matrix } else { Mat3::IDENTITY }
 }
 
-/// What a lost image costs: an error where shadows depend on it, a warning where only the look does.
-fn lose_texture(place: &str, image: &str, cause: &str, cuts: bool, log: &mut WarningLog) -> Result<(), LoadError> {
-    if cuts {
+/// Reports a texture that cannot be used: an error if it is an alpha mask, else a warning.
+fn report_unusable_texture(
+    place: &str,
+    image: &str,
+    cause: &str,
+    is_mask: bool,
+    log: &mut WarningLog,
+) -> Result<(), LoadError> {
+    if is_mask {
         return Err(LoadError::AlphaImage { place: place.into(), image: image.into(), cause: cause.into() });
     }
     log.warn(format!("{image} cannot be used ({cause}); drawn in its plain colour instead"), place);
     Ok(())
 }
 
-/// The file's images that base colours need.
+/// Indices in the file of the images that base colours use.
 pub(super) fn needed_images(drafts: &[DraftMaterial]) -> BTreeSet<usize> {
     drafts.iter().filter_map(|draft| draft.material.base_color_texture).map(|texture| texture.image).collect()
 }
 
-/// Finishes the materials: images by their final index, and what alpha comes to.
+/// Finishes the materials: sets final image indices and simplifies alpha.
 pub(super) fn finish(
     drafts: Vec<DraftMaterial>,
     images: &BTreeMap<usize, Decoded>,
@@ -128,26 +135,28 @@ pub(super) fn finish(
     log: &mut WarningLog,
 ) -> Result<Vec<Material>, LoadError> {
     let vertex_alpha = vertex_alpha_ranges(drawn, drafts.len());
-    let finish_one = |(mut draft, vertex): (DraftMaterial, Range)| {
-        let mut texture_alpha = Range { low: 1.0, high: 1.0 };
+    let finish_one = |(mut draft, vertex): (DraftMaterial, AlphaRange)| {
+        let mut texture_alpha = AlphaRange { low: 1.0, high: 1.0 };
         if let Some(texture) = &mut draft.material.base_color_texture {
             match images.get(&texture.image) {
                 Some(Decoded::Ready { index, lowest_alpha, highest_alpha }) => {
                     texture.image = *index;
-                    texture_alpha = Range { low: unit(*lowest_alpha), high: unit(*highest_alpha) };
+                    texture_alpha = AlphaRange { low: unit(*lowest_alpha), high: unit(*highest_alpha) };
                 }
                 Some(Decoded::Failed { name, cause, has_no_alpha }) => {
-                    let cuts = draft.cutoff.is_some() && !has_no_alpha;
-                    lose_texture(&draft.place, name, cause, cuts, log)?;
+                    let is_mask = draft.cutoff.is_some() && !has_no_alpha;
+                    report_unusable_texture(&draft.place, name, cause, is_mask, log)?;
                     draft.material.base_color_texture = None;
                 }
                 None => draft.material.base_color_texture = None,
             }
         }
         let factor = draft.material.base_color.w;
-        let range =
-            Range { low: factor * texture_alpha.low * vertex.low, high: factor * texture_alpha.high * vertex.high };
-        draft.material.alpha = draft.cutoff.map_or(Alpha::Opaque, |cutoff| range.cut_at(cutoff, draft.is_blended));
+        let range = AlphaRange {
+            low: factor * texture_alpha.low * vertex.low,
+            high: factor * texture_alpha.high * vertex.high,
+        };
+        draft.material.alpha = draft.cutoff.map_or(Alpha::Opaque, |cutoff| range.masked_at(cutoff, draft.is_blended));
         Ok(draft.material)
     };
     drafts.into_iter().zip(vertex_alpha).map(finish_one).collect()
@@ -157,14 +166,15 @@ fn unit(byte: u8) -> f32 {
     f32::from(byte) / 255.0
 }
 
+/// A range of alpha.
 #[derive(Clone, Copy)]
-struct Range {
+struct AlphaRange {
     low: f32,
     high: f32,
 }
 
-impl Range {
-    fn cut_at(self, cutoff: f32, is_blended: bool) -> Alpha {
+impl AlphaRange {
+    fn masked_at(self, cutoff: f32, is_blended: bool) -> Alpha {
         match (self.low >= cutoff, self.high >= cutoff) {
             (true, _) => Alpha::Opaque,
             (_, false) if is_blended => Alpha::Invisible,
@@ -173,12 +183,12 @@ impl Range {
     }
 }
 
-/// For each material, the range of vertex alpha over all meshes that wear it.
-fn vertex_alpha_ranges(drawn: &DrawnMeshes, material_count: usize) -> Vec<Range> {
-    let mut ranges = vec![Range { low: f32::INFINITY, high: f32::NEG_INFINITY }; material_count];
+/// For each material, the range of vertex alpha over all meshes that use it.
+fn vertex_alpha_ranges(drawn: &DrawnMeshes, material_count: usize) -> Vec<AlphaRange> {
+    let mut ranges = vec![AlphaRange { low: f32::INFINITY, high: f32::NEG_INFINITY }; material_count];
     for mesh in &drawn.meshes {
         let Some(range) = ranges.get_mut(mesh.material) else { continue };
-        let mut widen = |alpha: f32| *range = Range { low: range.low.min(alpha), high: range.high.max(alpha) };
+        let mut widen = |alpha: f32| *range = AlphaRange { low: range.low.min(alpha), high: range.high.max(alpha) };
         match &mesh.colors {
             Some(colors) => colors.iter().for_each(|color| widen(color.w)),
             None => widen(1.0),
@@ -192,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_texture_turns_about_the_origin_counter_clockwise_to_the_eye() {
+    fn a_texture_transform_rotates_counter_clockwise_about_the_origin() {
         let quarter = TextureTransform {
             offset: Some([0.25, 0.5]),
             rotation: Some(std::f32::consts::FRAC_PI_2),
@@ -201,19 +211,22 @@ mod tests {
         };
         let matrix = image_from_texcoord(&quarter);
         assert!(matrix.transform_point2(Vec2::ZERO).distance(Vec2::new(0.25, 0.5)) < 1e-6);
-        assert!(matrix.transform_point2(Vec2::X).distance(Vec2::new(0.25, 0.5 - 2.0)) < 1e-6, "u turns up: v is down");
+        assert!(
+            matrix.transform_point2(Vec2::X).distance(Vec2::new(0.25, 0.5 - 2.0)) < 1e-6,
+            "u turns upwards, since v points down"
+        );
         assert!(matrix.transform_point2(Vec2::Y).distance(Vec2::new(0.25 + 4.0, 0.5)) < 1e-6);
     }
 
     #[test]
     fn alpha_is_sampled_only_where_it_can_fall_on_both_sides_of_the_cutoff() {
-        let cut = |low, high, cutoff| Range { low, high }.cut_at(cutoff, true);
-        assert_eq!(cut(0.0, 1.0, 0.5), Alpha::Mask { cutoff: 0.5 });
-        assert_eq!(cut(0.0, 1.0, 0.0), Alpha::Opaque, "nothing is below a cutoff of 0");
-        assert_eq!(cut(0.0, 1.0, 1.0), Alpha::Mask { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
-        assert_eq!(cut(0.0, 0.49, 0.5), Alpha::Invisible);
-        assert_eq!(cut(0.5, 0.5, 0.5), Alpha::Opaque);
-        let mask = Range { low: 0.0, high: 0.4 }.cut_at(0.5, false);
-        assert_eq!(mask, Alpha::Mask { cutoff: 0.5 }, "a mask stays a mask, even one that hides everything");
+        let masked = |low, high, cutoff| AlphaRange { low, high }.masked_at(cutoff, true);
+        assert_eq!(masked(0.0, 1.0, 0.5), Alpha::Mask { cutoff: 0.5 });
+        assert_eq!(masked(0.0, 1.0, 0.0), Alpha::Opaque, "nothing is below a cutoff of 0");
+        assert_eq!(masked(0.0, 1.0, 1.0), Alpha::Mask { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
+        assert_eq!(masked(0.0, 0.49, 0.5), Alpha::Invisible);
+        assert_eq!(masked(0.5, 0.5, 0.5), Alpha::Opaque);
+        let mask = AlphaRange { low: 0.0, high: 0.4 }.masked_at(0.5, false);
+        assert_eq!(mask, Alpha::Mask { cutoff: 0.5 }, "a mask remains a mask even if it hides everything");
     }
 }

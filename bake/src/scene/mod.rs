@@ -1,11 +1,25 @@
 //! A static scene, as the baker needs it: every drawn primitive under every node that draws it.
 //!
-//! Two spaces appear here and nowhere are they mixed:
+//! # The three spaces
 //!
-//! * **world**: glTF's own. Metres, right-handed, +Y up, north is -Z and east is +X. Coordinates may be huge (a city in
-//!   map coordinates), so world positions are `f64`.
-//! * **bake**: world less [`Scene::centre_m`]. What is traced, sampled and drawn, in `f32` once the `f64` matrices have
-//!   been multiplied.
+//! Names of matrices and factors say which spaces they connect: `bake_from_object` takes object space to bake space.
+//!
+//! | space | origin and unit | numbers | used by |
+//! |---|---|---|---|
+//! | **world** | the file's own; metres | `f64` | nodes, sun and lamp paths, manifests, printed texels |
+//! | **bake** | the scene's centre, [`Scene::centre_m`]; metres | `f32` corners, `f64` points | tracing, sampling, drawing |
+//! | **tracer** | as bake; scaled by a power of two | `f32` corners, `f64` rays | [`crate::trace`], the exact engines |
+//!
+//! * **World** is glTF's: right-handed, +Y up. North is -Z and east +X, unless a sun path turns them. Coordinates may
+//!   be millions of metres (a city in map coordinates), so positions and matrices are `f64` and are never rounded.
+//! * **Bake** space is world space less [`Scene::centre_m`], axes unchanged, so directions are the same in both.
+//!   Matrices are multiplied in `f64`, the centre is subtracted, and only then are corners rounded to `f32`
+//!   ([`Geometry`]). The centre is a multiple of a power of two, so subtracting it is exact.
+//! * **Tracer** space is bake space times a power of two that brings the scene's half size to between 512 and 1024
+//!   units. Scaling by a power of two changes no digit. It is needed because the hierarchy has absolute tolerances.
+//!
+//! Beside these, *object* space is a mesh's own, before its node's matrix, and *page* coordinates lie on the atlas
+//! ([`crate::atlas`]).
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 
@@ -58,7 +72,7 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Materials that are drawn, in file order; the last one is glTF's default when some primitive names none.
     pub materials: Vec<Material>,
-    /// Images that some material uses, decoded.
+    /// Decoded images, only those that some material uses.
     pub images: Vec<Image>,
     /// Cameras under nodes, in node order.
     pub cameras: Vec<Camera>,
@@ -71,7 +85,7 @@ pub struct Scene {
     pub half_extent_m: DVec3,
     /// Triangles that were read and left out, by reason.
     pub dropped: Dropped,
-    /// What a user should know about how the file was read: one sentence each, with the cause and what was done.
+    /// What the user should know about how the file was read: one sentence each, with the cause and what was done.
     pub warnings: Vec<String>,
 }
 
@@ -84,14 +98,14 @@ pub struct Source {
     pub sha256: String,
 }
 
-/// A node of the drawn scene. Kept so that `scene.glb` has the hierarchy and the names that the artist gave.
+/// A node of the drawn scene. Kept so that `scene.glb` has the file's hierarchy and names.
 #[derive(Debug, Clone)]
 pub struct Node {
     /// Name, if the file gives one.
     pub name: Option<String>,
     /// Index of the parent in [`Scene::nodes`]; always smaller than the node's own.
     pub parent: Option<usize>,
-    /// The node's own transform. Nodes that flatten their volume to nothing, and all below them, are left out.
+    /// The node's own transform. Nodes with a singular matrix are left out, with all nodes below them.
     pub parent_from_node: DMat4,
     /// Product of all transforms up to the root.
     pub world_from_node: DMat4,
@@ -108,8 +122,8 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit shading normals, object space; absent: flat shading.
     pub normals: Option<Vec<Vec3>>,
-    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them. (Where the base colour wants a set beyond those, that set
-    /// stands in the first place.) A texture whose set is absent shows its texel at (0, 0) everywhere.
+    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them. If the base colour uses a higher set, that set replaces
+    /// the first. A texture whose set is absent shows its texel at (0, 0) everywhere.
     pub texcoords: [Option<Vec<Vec2>>; 2],
     /// Linear RGBA vertex colour, multiplied with the material's base colour.
     pub colors: Option<Vec<Vec4>>,
@@ -135,11 +149,11 @@ pub struct Instance {
     pub mesh: usize,
     /// Object space to bake space, composed in `f64` before the scene's centre was subtracted.
     pub bake_from_object: DMat4,
-    /// True where the matrix mirrors (negative determinant): the winding turns over, the front stays the front.
+    /// Whether the matrix mirrors (negative determinant): the winding is reversed, but the front stays the front.
     pub is_mirrored: bool,
 }
 
-/// What a surface is made of, so far as sunbake draws and traces it.
+/// A surface's material, as far as sunbake draws and traces it.
 #[derive(Debug, Clone)]
 pub struct Material {
     /// Name, if any.
@@ -154,22 +168,22 @@ pub struct Material {
     pub alpha: Alpha,
     /// Whether both sides are drawn, and can be lit.
     pub is_double_sided: bool,
-    /// `KHR_materials_unlit`: drawn in its base colour.
+    /// `KHR_materials_unlit`: drawn in its base colour, without shading.
     pub is_unlit: bool,
 }
 
-/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least half
-/// opaque casts and shows, what is less does neither (see docs/decisions.md, "Blended materials").
+/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least
+/// half opaque casts and shows, what is less does neither (see docs/decisions.md, "Blended materials").
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
     /// Alpha is ignored.
     Opaque,
-    /// Points whose alpha is below the cutoff are holes: to the eye and to light.
+    /// Alpha mask: points whose alpha is below the cutoff are not there.
     Mask {
-        /// Linear alpha at and above which a point is solid.
+        /// Least alpha of a solid point, 0 to 1 (0: every point is solid).
         cutoff: f32,
     },
-    /// Nothing of the surface reaches the cutoff: it is left out of drawing, tracing and baking.
+    /// No point reaches the cutoff, or the user left the material out: not drawn, not traced and not baked.
     Invisible,
 }
 
@@ -182,7 +196,7 @@ pub struct TextureRef {
     pub texcoord: usize,
     /// `KHR_texture_transform`: image coordinates from texture coordinates (homogeneous, column-major).
     pub image_from_texcoord: Mat3,
-    /// How coordinates outside [0, 1] are brought back, for u and v.
+    /// What coordinates outside [0, 1] mean, for u and v.
     pub wrap: [Wrap; 2],
 }
 
@@ -193,7 +207,7 @@ pub enum Wrap {
     Repeat,
     /// Tile, every second one mirrored.
     Mirror,
-    /// The border's texel goes on for ever.
+    /// The border's texel is repeated.
     Clamp,
 }
 
@@ -208,7 +222,7 @@ pub struct Image {
     pub height: u32,
     /// RGBA, 8 bits a channel, `width * height` of them. Colour as stored (sRGB).
     pub rgba: Vec<[u8; 4]>,
-    /// The bytes as they stood in the file (PNG or JPEG), for writing the scene again without loss.
+    /// The file's own bytes (PNG or JPEG), for writing the scene again without loss.
     pub encoded: Vec<u8>,
     /// `image/png` or `image/jpeg`.
     pub mime_type: &'static str,
@@ -221,7 +235,7 @@ pub struct Camera {
     pub name: Option<String>,
     /// Index in [`Scene::nodes`].
     pub node: usize,
-    /// Bake space from camera space (looking down -Z, +Y up), rigid.
+    /// Bake space from camera space (looking along -Z, +Y up); a rigid motion.
     pub bake_from_camera: DMat4,
     /// Vertical field of view in radians.
     pub fov_y_rad: f64,
@@ -239,7 +253,7 @@ pub struct Dropped {
 }
 
 impl Dropped {
-    /// All of them.
+    /// Sum over all reasons.
     pub fn total(&self) -> u64 {
         self.repeated_index + self.zero_area + self.non_finite
     }
@@ -251,7 +265,7 @@ impl Scene {
         self.instances.iter().map(|i| self.meshes[i.mesh].triangle_count()).sum()
     }
 
-    /// Whether any light-blocking surface has holes cut by alpha, so that rays must sample textures.
+    /// Whether any surface has an alpha mask, so that rays must sample its alpha.
     pub fn has_alpha_mask(&self) -> bool {
         self.instances.iter().any(|i| matches!(self.materials[self.meshes[i.mesh].material].alpha, Alpha::Mask { .. }))
     }

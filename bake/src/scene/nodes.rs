@@ -1,7 +1,8 @@
-//! The node hierarchy of the scene that is drawn, its matrices composed in `f64`.
+//! The node hierarchy of the drawn scene, with matrices composed in `f64`.
 //!
-//! Map coordinates have seven digits before the point and matter to the millimetre, so translations are read as `f64`
-//! straight from the JSON and are never rounded. The walk keeps its own stack: a chain of a million nodes is only long.
+//! Map coordinates have seven digits before the decimal point and matter to the millimetre, so translations are read as
+//! `f64` straight from the JSON and are never rounded. The walk has its own stack, so a chain of a million nodes does
+//! not overflow the program's.
 
 use super::{
     LoadError, Node,
@@ -11,7 +12,7 @@ use super::{
 };
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
-/// Nodes of the drawn scene, parents before children, and what each was in the file.
+/// Nodes of the drawn scene, parents before children, with their origin in the file.
 pub(super) struct NodeTree {
     pub nodes: Vec<Node>,
     /// For each node, its index in the file.
@@ -20,7 +21,7 @@ pub(super) struct NodeTree {
     pub file: Vec<document::JsonNode>,
 }
 
-/// Columns so nearly in one plane that the matrix has no usable inverse.
+/// Volume of a matrix's unit columns at and below which it counts as singular.
 const SINGULAR: f64 = 1e-12;
 
 /// Reads the default scene, else the first, else every node that has no parent.
@@ -53,16 +54,16 @@ fn parent_of(file: &[document::JsonNode], child: usize) -> usize {
     file.iter().position(|node| node.children.iter().flatten().any(|&c| c == child)).unwrap_or(child)
 }
 
-/// What the walk knows of a node of the file.
+/// State of a node of the file during the walk.
 #[derive(Clone, Copy, PartialEq)]
 enum Visit {
     Unseen,
-    /// Above the node that is being read now.
+    /// An ancestor of the node that is being read, or that node.
     Open,
     Done,
 }
 
-/// What the walk does next.
+/// An entry of the walk's stack.
 enum WalkStep {
     Enter { index: usize, parent: Option<usize> },
     Leave { index: usize },
@@ -99,7 +100,7 @@ fn walk(file: Vec<document::JsonNode>, roots: Vec<usize>, log: &mut WarningLog) 
     Ok(tree)
 }
 
-const SECOND_PARENT: &str = "it has more than one parent, and is drawn under the first alone";
+const SECOND_PARENT: &str = "it has more than one parent, and is drawn under the first only";
 
 fn missing(tree: &NodeTree, index: usize, parent: Option<usize>) -> LoadError {
     let place = parent.map_or_else(|| "scenes".to_owned(), place::<document::JsonNode>);
@@ -107,7 +108,7 @@ fn missing(tree: &NodeTree, index: usize, parent: Option<usize>) -> LoadError {
 }
 
 impl NodeTree {
-    /// Places a node; `None` where nothing at or below it is drawn.
+    /// Adds a node of the file; `None` if neither it nor any node below it is drawn.
     fn add(&mut self, index: usize, parent: Option<usize>, log: &mut WarningLog) -> Result<Option<usize>, LoadError> {
         let Some(node) = self.file.get(index) else { return Ok(None) };
         refuse::check_node(node)?;
@@ -118,7 +119,7 @@ impl NodeTree {
         let world_from_parent = parent.and_then(|p| self.nodes.get(p)).map_or(DMat4::IDENTITY, |p| p.world_from_node);
         let world_from_node = world_from_parent * parent_from_node;
         if !is_invertible(&world_from_node) {
-            log.warn("its matrix is singular, so it and what is below it have no volume; left out", label(node, index));
+            log.warn("its matrix is singular, so it was left out with all nodes below it", label(node, index));
             return Ok(None);
         }
         self.nodes.push(Node { name: node.name.clone(), parent, parent_from_node, world_from_node });
@@ -126,7 +127,7 @@ impl NodeTree {
         Ok(Some(self.nodes.len() - 1))
     }
 
-    /// World matrices of all nodes of the file, drawn or not: a skin's joints may hang anywhere.
+    /// World matrices of all nodes of the file, drawn or not, since a skin's joints may be anywhere.
     pub fn world_from_file_nodes(&self) -> Vec<DMat4> {
         let mut worlds: Vec<DMat4> = self.file.iter().map(local_matrix).collect();
         let mut is_child = vec![false; worlds.len()];
@@ -148,13 +149,13 @@ impl NodeTree {
     }
 }
 
-/// `KHR_node_visibility`.
+/// Whether `KHR_node_visibility` hides the node.
 fn is_hidden(node: &document::JsonNode) -> bool {
     let visibility = node.extensions.as_ref().and_then(|all| all.get("KHR_node_visibility"));
     visibility.and_then(|v| v.get("visible")) == Some(&serde_json::Value::Bool(false))
 }
 
-/// `nodes[7] "Wall"`.
+/// A node's place and name, for messages: `nodes[7] "Wall"`.
 pub(super) fn label(node: &document::JsonNode, index: usize) -> String {
     match &node.name {
         Some(name) => format!("{} \"{name}\"", place::<document::JsonNode>(index)),
@@ -164,7 +165,7 @@ pub(super) fn label(node: &document::JsonNode, index: usize) -> String {
 
 fn local_matrix(node: &document::JsonNode) -> DMat4 {
     if let Some(matrix) = &node.matrix {
-        // The last row of an affine matrix, whatever the file says.
+        // The file's last row is ignored: an affine matrix has (0, 0, 0, 1).
         let [a, b, c, _, d, e, f, _, g, h, i, _, x, y, z, _] = *matrix;
         let column = |x, y, z, w| DVec4::new(x, y, z, w);
         return DMat4::from_cols(
@@ -180,7 +181,7 @@ fn local_matrix(node: &document::JsonNode) -> DMat4 {
     DMat4::from_scale_rotation_translation(scale, DQuat::from_vec4(turn), translation)
 }
 
-/// Judged by the shape of the matrix and not by its size.
+/// Decided by the matrix's shape, independent of its scale.
 fn is_invertible(matrix: &DMat4) -> bool {
     let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|c| c.truncate());
     let lengths = columns.map(DVec3::length);

@@ -1,9 +1,9 @@
-//! Shading normals that can be relied on: unit length, and none missing.
+//! Repairs vertex normals, so that all have unit length.
 
 use glam::{DVec3, Vec3};
 
-/// Normals brought to unit length. One that is zero or not finite is replaced by the mean direction, weighted by area,
-/// of the triangles at its vertex.
+/// Normalises all normals. One that is zero or not finite is replaced by the area-weighted mean normal of the triangles
+/// at its vertex.
 pub(super) fn repaired(mut normals: Vec<Vec3>, positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let unit = |normal: Vec3| normal.as_dvec3().try_normalize().map(DVec3::as_vec3);
     let mut is_sound = true;
@@ -20,7 +20,7 @@ pub(super) fn repaired(mut normals: Vec<Vec3>, positions: &[Vec3], indices: &[u3
     normals
 }
 
-/// The mean direction of the triangles at each vertex; +Y where they cancel.
+/// The area-weighted mean normal of the triangles at each vertex; +Y where they cancel.
 fn from_triangles(positions: &[Vec3], indices: &[u32]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for triangle in indices.as_chunks::<3>().0 {

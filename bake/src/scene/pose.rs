@@ -1,4 +1,4 @@
-//! Skins and morph targets, in the pose that a file shows when nothing is animated.
+//! Skins and morph targets, in the file's rest pose (no animation applied).
 //!
 //! Based on: Khronos Group, *glTF 2.0 Specification*, sections 3.7.2.2 (morph targets) and 3.7.3.3 (skinned meshes).
 //! The specification places a skinned mesh by its joints alone and ignores the matrix of its node. Here the inverse of
@@ -13,7 +13,7 @@ use super::{
 };
 use glam::{DMat3, DMat4, Vec3};
 
-/// How a node poses its mesh.
+/// A node's skin and morph weights.
 #[derive(Default)]
 pub(super) struct Pose {
     /// Node's object space from mesh space, one per joint; empty without a skin.
@@ -22,7 +22,7 @@ pub(super) struct Pose {
     weights: Vec<f32>,
 }
 
-/// Where the joints stand. Worked out once, and only if there is a skin.
+/// World matrices of joints, computed once and only if there is a skin.
 #[derive(Default)]
 pub(super) struct Skeletons {
     world_from_file_node: Option<Vec<DMat4>>,
@@ -34,7 +34,7 @@ impl Skeletons {
     }
 }
 
-/// A vertex's joints and their weights, in fours.
+/// Joints and weights of every vertex, in sets of four (`JOINTS_n`, `WEIGHTS_n`).
 type Influences = Vec<(Vec<[u32; 4]>, Vec<[f32; 4]>)>;
 
 impl Pose {
@@ -67,7 +67,7 @@ impl Pose {
         Self { object_from_bind: Vec::new(), weights: mesh.weights.clone().unwrap_or_default() }
     }
 
-    /// Moves vertices from where they were modelled to where they stand.
+    /// Applies morph targets, then the skin, to positions and normals.
     pub fn apply(
         &self,
         reader: Reader,
@@ -83,12 +83,12 @@ impl Pose {
             }
         }
         if !self.object_from_bind.is_empty() {
-            self.bend(&influences(reader, primitive)?, positions, normals);
+            self.skin(&influences(reader, primitive)?, positions, normals);
         }
         Ok(())
     }
 
-    fn bend(&self, influences: &Influences, positions: &mut [Vec3], normals: &mut [Vec3]) {
+    fn skin(&self, influences: &Influences, positions: &mut [Vec3], normals: &mut [Vec3]) {
         for (vertex, position) in positions.iter_mut().enumerate() {
             let Some(object_from_bind) = self.blended(influences, vertex) else { continue };
             *position = object_from_bind.transform_point3(position.as_dvec3()).as_vec3();
@@ -99,7 +99,8 @@ impl Pose {
         }
     }
 
-    /// The mean of a vertex's joint matrices. Exporters forget to normalise weights, so they are divided by their sum.
+    /// The weighted mean of a vertex's joint matrices. Some exporters do not normalise weights, so the sum divides
+    /// them.
     fn blended(&self, influences: &Influences, vertex: usize) -> Option<DMat4> {
         let mut sum = 0.0;
         let mut blend = DMat4::ZERO;
@@ -130,7 +131,7 @@ fn joint_matrices(reader: Reader, skin: usize, world_from_file_node: &[DMat4]) -
     let matrix = |(at, &joint): (usize, &usize)| {
         let world_from_joint = world_from_file_node
             .get(joint)
-            .ok_or_else(|| LoadError::structure(&place, format!("its joint {joint} is no node")))?;
+            .ok_or_else(|| LoadError::structure(&place, format!("its joint {joint} is not a node")))?;
         let joint_from_bind =
             inverse_bind.get(at).map_or(DMat4::IDENTITY, |m| DMat4::from_cols_array(&m.map(f64::from)));
         Ok(*world_from_joint * joint_from_bind)

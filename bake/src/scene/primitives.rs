@@ -14,27 +14,27 @@ use super::{
 use glam::{Vec2, Vec3, Vec4};
 use std::collections::{HashMap, hash_map::Entry};
 
-/// What the nodes draw.
+/// Meshes that some node draws.
 #[derive(Default)]
 pub(super) struct DrawnMeshes {
     pub meshes: Vec<Mesh>,
-    /// For each mesh, its material in the file.
+    /// For each mesh, its material's index in the file; none: the default material.
     pub file_material: Vec<Option<usize>>,
-    /// Pairs of a node and a mesh, in node order.
+    /// Pairs of a node and a mesh (both indices in the scene), in node order.
     pub draws: Vec<(usize, usize)>,
     pub dropped: Dropped,
 }
 
-/// A mesh in the file and, where a node bends it, that node.
+/// A mesh of the file and, if a node poses it (skin or morph weights), that node.
 type PosedMesh = (usize, Option<usize>);
 
-/// What an instance takes, here and later on.
+/// Memory that an instance takes, here and in later stages.
 const BYTES_PER_DRAW: u64 = 256;
 
-/// What a primitive takes beside its vertices. Counted so that a small file cannot ask for endless reading.
+/// Memory of a primitive beside its vertices. Counting it bounds the work that a small file can cause.
 const BYTES_PER_PRIMITIVE: u64 = 1024;
 
-/// Reads what the nodes of a tree draw.
+/// Reads every mesh that the nodes of a tree draw.
 pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Result<DrawnMeshes, LoadError> {
     let mut drawn = DrawnMeshes::default();
     let mut known: HashMap<PosedMesh, Vec<usize>> = HashMap::new();
@@ -47,7 +47,7 @@ pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Res
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
                 if file.skin.is_some() {
-                    log.warn("its skin was baked as it stands when nothing is animated", label(file, file_index));
+                    log.warn("its skin was baked in its rest pose", label(file, file_index));
                 }
                 let mesh: document::JsonMesh = reader.doc.get(mesh_index)?;
                 let pose = match is_posed {
@@ -57,14 +57,16 @@ pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Res
                 new.insert(drawn.read_mesh(reader, mesh_index, &mesh, &pose, log)?)
             }
         };
-        reader.budget.take(meshes.len() as u64, BYTES_PER_DRAW, || format!("drawing meshes[{mesh_index}] so often"))?;
+        reader
+            .budget
+            .take(meshes.len() as u64, BYTES_PER_DRAW, || format!("drawing meshes[{mesh_index}] that often"))?;
         drawn.draws.extend(meshes.iter().map(|&mesh| (node, mesh)));
     }
     Ok(drawn)
 }
 
 impl DrawnMeshes {
-    /// Reads the primitives of a mesh, and says which meshes of ours they became.
+    /// Reads the primitives of a mesh; returns their indices in [`DrawnMeshes::meshes`].
     fn read_mesh(
         &mut self,
         reader: Reader,
@@ -110,7 +112,7 @@ struct PrimitiveReader<'a> {
 }
 
 impl PrimitiveReader<'_> {
-    /// `None` where there is no surface.
+    /// `None` if there is no surface.
     fn read(&self, dropped: &mut Dropped, log: &mut WarningLog) -> Result<Option<Mesh>, LoadError> {
         let position = self.primitive.attributes.get("POSITION").copied();
         refuse::check_primitive(self.primitive, position.is_some_and(|accessor| self.reader.has_data(accessor)))?;
@@ -153,7 +155,7 @@ impl PrimitiveReader<'_> {
         Ok(topology.triangulate(&order))
     }
 
-    /// An attribute that only the look depends on: one that cannot be read is left out.
+    /// An attribute that shadows do not depend on: if it cannot be read, it is left out with a warning.
     fn optional_attribute<T>(
         &self,
         name: &'static str,
@@ -171,7 +173,7 @@ impl PrimitiveReader<'_> {
         Ok(None)
     }
 
-    /// Sets 0 and 1; but where the base colour wants a set beyond them, that one stands in place of set 0.
+    /// Sets 0 and 1. If the base colour uses a higher set, that set replaces set 0.
     fn texcoords(&self, count: usize, used: &[u32], log: &mut WarningLog) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
         let material = self.material.and_then(|index| self.reader.doc.get::<document::JsonMaterial>(index).ok());
         let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord()).filter(|&set| set > 1);
@@ -200,7 +202,7 @@ fn finite_texcoord([u, v]: [f32; 2]) -> Vec2 {
     Vec2::new(finite(u), finite(v))
 }
 
-/// RGB or RGBA; clamped, as the specification asks.
+/// RGB or RGBA, clamped to [0, 1] as the specification requires.
 fn colors(reader: Reader, accessor: usize) -> Result<Vec<Vec4>, LoadError> {
     let clamped = |c: Vec4| if c.is_finite() { c.clamp(Vec4::ZERO, Vec4::ONE) } else { Vec4::ONE };
     Ok(match reader.lanes(accessor)? {
@@ -209,7 +211,7 @@ fn colors(reader: Reader, accessor: usize) -> Result<Vec<Vec4>, LoadError> {
     })
 }
 
-/// The used entries of an attribute; all of them, where all are used.
+/// The entries of an attribute that are used, in their order.
 fn gather<T: Copy>(values: &[T], used: &[u32]) -> Vec<T> {
     used.iter().filter_map(|&index| values.get(index as usize).copied()).collect()
 }

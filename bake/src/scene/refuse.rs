@@ -1,7 +1,7 @@
-//! Extensions that change what is drawn and that sunbake does not read: refused by name, with what removes them.
+//! Extensions that change geometry and that sunbake does not read: refused by name, with the command that removes them.
 //!
-//! The commands were tried with gltf-transform 4.5. An extension that only changes how a surface shines, or that tells
-//! of something other than geometry, does no harm to a bake and is passed over even where a file requires it.
+//! The commands were tried with gltf-transform 4.5. Extensions that only change shading, or that have nothing to do
+//! with geometry, are ignored even if a file requires them.
 
 use super::{
     LoadError,
@@ -14,7 +14,7 @@ const DRACO: &str = "KHR_draco_mesh_compression";
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
-/// Read in full, or without bearing on geometry and base colour.
+/// Extensions that are read completely, or that affect neither geometry nor base colour.
 const HARMLESS: [&str; 14] = [
     "KHR_lights_punctual",
     "KHR_texture_transform",
@@ -32,7 +32,7 @@ const HARMLESS: [&str; 14] = [
     "MSFT_packing_occlusionRoughnessMetallic",
 ];
 
-/// Refuses a file that requires what sunbake does not read.
+/// Refuses a file that requires an extension which sunbake does not read.
 pub(super) fn check_required(doc: &Document) -> Result<(), LoadError> {
     match doc.strings("extensionsRequired").find(|name| !is_harmless(name)) {
         Some(name) => Err(refusal(name)),
@@ -63,7 +63,7 @@ fn has(extensions: Option<&BTreeMap<String, Value>>, name: &str) -> bool {
     extensions.is_some_and(|map| map.contains_key(name))
 }
 
-/// Why a view's buffer is not there: perhaps its bytes stand elsewhere, compressed.
+/// The error for a view without its buffer: the compression extension, if the view's bytes are compressed elsewhere.
 pub(super) fn missing_buffer(view: &JsonBufferView, error: &LoadError) -> LoadError {
     match MESHOPT.iter().find(|name| has(view.extensions.as_ref(), name)) {
         Some(name) => refusal(name),
@@ -71,7 +71,7 @@ pub(super) fn missing_buffer(view: &JsonBufferView, error: &LoadError) -> LoadEr
     }
 }
 
-/// Refuses a primitive that has no data but its Draco data.
+/// Refuses a primitive that has only Draco data.
 pub(super) fn check_primitive(primitive: &JsonPrimitive, has_plain_positions: bool) -> Result<(), LoadError> {
     match has(primitive.extensions.as_ref(), DRACO) && !has_plain_positions {
         true => Err(refusal(DRACO)),
@@ -79,7 +79,7 @@ pub(super) fn check_primitive(primitive: &JsonPrimitive, has_plain_positions: bo
     }
 }
 
-/// Refuses a node that draws its mesh many times: the file may call it optional, but the shadows would be wrong.
+/// Refuses GPU instancing on a drawn node, even if the file calls it optional: shadows would be missing.
 pub(super) fn check_node(node: &JsonNode) -> Result<(), LoadError> {
     match node.mesh.is_some() && has(node.extensions.as_ref(), INSTANCING) {
         true => Err(refusal(INSTANCING)),

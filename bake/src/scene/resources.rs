@@ -1,7 +1,7 @@
 //! Buffers and images that a scene names: inside the file, in a data URI, or in a file below the scene's own folder.
 //!
-//! A scene may come from a stranger, so it opens nothing outside its folder: no URL, no absolute path, no path that
-//! climbs out by `..` or by a symbolic link.
+//! Scenes are not trusted: nothing outside their folder is opened. URLs, absolute paths, and paths that leave the
+//! folder by `..` or by a symbolic link are refused.
 
 use super::{
     LoadError, LoadLimits,
@@ -15,7 +15,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Fetches what URIs name, and hashes what came from other files.
+/// Reads the data that URIs name, and hashes the files among it.
 pub(super) struct Fetcher<'a> {
     folder: PathBuf,
     budget: &'a MemoryBudget,
@@ -23,7 +23,7 @@ pub(super) struct Fetcher<'a> {
 }
 
 impl<'a> Fetcher<'a> {
-    /// `bytes` are those of the scene's own file.
+    /// `bytes` are the scene file's.
     pub fn new(scene: &Path, bytes: &[u8], budget: &'a MemoryBudget) -> Self {
         let folder = scene.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         Self { folder: folder.to_owned(), budget, hasher: Sha256::new_with_prefix(bytes) }
@@ -41,14 +41,14 @@ impl<'a> Fetcher<'a> {
         Ok(bytes)
     }
 
-    /// Reads a file for the sake of the hash, and keeps nothing of it.
+    /// Reads a file for the hash only.
     pub fn hash_only(&mut self, place: &str, uri: &str) -> Result<(), LoadError> {
         if uri.starts_with("data:") {
             return Ok(());
         }
         let path = self.resolve(place, uri)?;
-        let passing = MemoryBudget::new(&LoadLimits { max_memory_bytes: self.budget.left() });
-        self.hasher.update(read_file(&path, &passing, "put it back beside the scene")?);
+        let temporary = MemoryBudget::new(&LoadLimits { max_memory_bytes: self.budget.left() });
+        self.hasher.update(read_file(&path, &temporary, "put it back beside the scene")?);
         Ok(())
     }
 
@@ -77,7 +77,7 @@ impl<'a> Fetcher<'a> {
     }
 }
 
-/// `http:`, `file:`, `C:`; an absolute path; a path with a zero byte, which no system opens.
+/// A URL (`http:`, `file:`), a drive (`C:`), an absolute path, or a path with a zero byte.
 fn has_scheme(path: &str) -> bool {
     let scheme = path.split(['/', '?', '#']).next().unwrap_or_default();
     path.starts_with('/') || scheme.contains(':') || path.contains('\0')
@@ -99,7 +99,7 @@ fn hex_digit(byte: u8) -> Option<u8> {
     char::from(byte).to_digit(16).map(|digit| digit as u8)
 }
 
-/// `%20` becomes a space; what is no escape stays as it is.
+/// `%20` becomes a space; an invalid escape is kept as text.
 fn percent_decoded(text: &str) -> String {
     String::from_utf8(percent_decoded_bytes(text.as_bytes())).unwrap_or_else(|_| text.to_owned())
 }
@@ -122,7 +122,7 @@ fn percent_decoded_bytes(mut rest: &[u8]) -> Vec<u8> {
     out
 }
 
-/// What follows `data:`.
+/// `data` is the URI after `data:`.
 fn decode_data_uri(data: &str) -> Result<Vec<u8>, String> {
     let (head, body) = data.split_once(',').ok_or("its data URI has no comma")?;
     match head.ends_with(";base64") {
@@ -155,13 +155,13 @@ fn decode_base64(text: &str) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// All buffers. One that cannot be had is an error only when something needs it.
+/// All buffers. One that cannot be read is an error only if something needs it.
 pub(super) struct Buffers<'a> {
     buffers: Vec<Result<Cow<'a, [u8]>, LoadError>>,
 }
 
 impl<'a> Buffers<'a> {
-    /// Fetches every buffer. Refuses a scene that names a file outside its folder even where nothing needs it.
+    /// Reads every buffer. A buffer outside the scene's folder is an error even if nothing needs it.
     pub fn read(doc: &Document, binary: Option<&'a [u8]>, fetcher: &mut Fetcher) -> Result<Self, LoadError> {
         let one = |index| match read_buffer(doc, index, binary, fetcher) {
             Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => Err(error),
@@ -202,7 +202,7 @@ fn read_buffer<'a>(
     }
 }
 
-/// SHA-256 in lower-case hex: what a scene that is one file, and refers to no other, is known by.
+/// SHA-256 in lower-case hex: equals [`crate::scene::Source::sha256`] of a scene that is a single file.
 pub fn sha256(bytes: &[u8]) -> String {
     hex(Sha256::new_with_prefix(bytes))
 }

@@ -1,12 +1,12 @@
-//! Shading normals in bake space: which way a surface is meant to face where its triangles only approximate it.
+//! Shading normals in bake space, interpolated from the mesh's vertex normals.
 
 use super::{Geometry, Scene};
 use glam::{DMat3, DVec3, Vec3};
 
-/// Below this cosine between the two, a shading normal is not believed and the triangle's own is taken.
+/// Least cosine between a shading normal and its triangle's normal; below it the triangle's normal is used.
 const LEAST_COSINE: f64 = 0.1;
 
-/// Brings the normals of meshes into bake space.
+/// Transforms mesh normals to bake space.
 #[derive(Debug, Clone)]
 pub struct ShadingNormals {
     normal_from_object: Vec<DMat3>,
@@ -19,13 +19,14 @@ impl ShadingNormals {
         Self { normal_from_object: scene.instances.iter().map(inverse_transpose).collect() }
     }
 
-    /// A normal of an instance's mesh, object space, as a unit vector in bake space; zero where it has no direction.
+    /// Object space to bake space: a normal of an instance's mesh as a unit vector; zero if it has no direction.
     pub fn turned(&self, instance: usize, normal: Vec3) -> DVec3 {
         (self.normal_from_object[instance] * normal.as_dvec3()).normalize_or_zero()
     }
 
-    /// The unit normal that the mesh's own normals blend to at a point of a triangle (weights of its second and third
-    /// corner), on the triangle's front. The triangle's normal where the mesh has none, or where they are far from it.
+    /// The interpolated unit normal at a point of a triangle (weights of its second and third corner), on the
+    /// triangle's front. The triangle's own normal where the mesh has no normals, or where they deviate too far from
+    /// it.
     pub fn at(&self, scene: &Scene, geometry: &Geometry, triangle: usize, [u, v]: [f64; 2]) -> DVec3 {
         let plane = geometry.normal(triangle);
         let surface = geometry.surface(triangle);

@@ -1,10 +1,11 @@
-//! Triangle lists out of lists, strips and fans, and which of their triangles are worth keeping.
+//! Triangle lists from lists, strips and fans, without degenerate triangles.
 //!
 //! Based on: Khronos Group, *glTF 2.0 Specification*, section 3.7.2.1 (topology types).
 //!
-//! A triangle is dropped where it repeats an index, has a corner that is not finite, or has no area. The last is judged
-//! by shape and not by size: height over longest edge, at most [`FLATTEST`]. A needle of 100,000 to 1 is kept, since its
-//! plane is still known to a few digits in `f32`; one of 20,000,000 to 1 is a line, whose normal would be noise.
+//! A triangle is dropped if it repeats an index, has a corner that is not finite, or has no area. The last is decided
+//! by shape, independent of size: height over longest edge is at most [`FLATTEST`]. A needle of 100,000 to 1 is kept,
+//! since its plane is still known to a few digits in `f32`; one of 20,000,000 to 1 counts as a line, since its normal
+//! would be noise.
 
 use super::{Dropped, LoadError};
 use glam::{DVec3, Vec3};
@@ -31,7 +32,7 @@ impl Topology {
         }
     }
 
-    /// Three indices a triangle. What is left over at the end of a list makes no triangle.
+    /// Three indices a triangle. One or two indices left over at the end of a list are ignored.
     pub fn triangulate(self, order: &[u32]) -> Vec<u32> {
         match self {
             Self::List => order.as_chunks::<3>().0.as_flattened().to_vec(),
@@ -47,7 +48,7 @@ impl Topology {
     }
 }
 
-/// Refuses indices that no vertex has.
+/// An error if some index is not below `vertex_count`.
 pub(super) fn check_range(indices: &[u32], vertex_count: usize, place: &str) -> Result<(), LoadError> {
     match indices.iter().position(|&index| index as usize >= vertex_count) {
         None => Ok(()),
@@ -59,7 +60,7 @@ pub(super) fn check_range(indices: &[u32], vertex_count: usize, place: &str) -> 
     }
 }
 
-/// Leaves out triangles without a surface, and counts them. Indices must be in range.
+/// Removes degenerate triangles and counts them by reason. Indices must be in range.
 pub(super) fn clean(indices: &[u32], positions: &[Vec3], dropped: &mut Dropped) -> Vec<u32> {
     let mut kept = Vec::with_capacity(indices.len());
     for triangle in indices.as_chunks::<3>().0 {
@@ -83,7 +84,7 @@ fn is_line([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length() <= FLATTEST * longest_squared
 }
 
-/// Which vertices some triangle uses, in their old order; and the triangles, renumbered to match.
+/// The vertices that some triangle uses, in their old order, and the triangles renumbered to match.
 pub(super) fn compact(indices: &[u32], vertex_count: usize) -> (Vec<u32>, Vec<u32>) {
     let mut new_from_old = vec![u32::MAX; vertex_count];
     for &index in indices {
@@ -131,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn needles_are_judged_by_shape_at_any_size() {
+    fn needles_are_dropped_by_shape_at_any_size() {
         for size in [1e-12f32, 1e-4, 1.0, 1e4, 1e15] {
             let needle = |height: f32| [Vec3::ZERO, Vec3::X * size, Vec3::new(0.5 * size, height * size, 0.0)];
             let mut dropped = Dropped::default();

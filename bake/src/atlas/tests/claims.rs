@@ -105,7 +105,7 @@ fn an_instance_gets_texels_for_the_area_it_has_in_the_scene() {
 }
 
 #[test]
-fn air_has_no_texels() {
+fn invisible_surfaces_have_no_texels() {
     let mut haze = cuboid(Vec3::ONE);
     haze.material = 1;
     let scene = scene(vec![(haze, once()), (cuboid(Vec3::ONE), once())]);

@@ -70,7 +70,7 @@ fn b7_needles_slivers_and_flat_triangles_have_texels_and_do_not_fail() {
 }
 
 #[test]
-fn b7_edges_with_three_triangles_and_turned_over_copies_unwrap() {
+fn b7_edges_with_three_triangles_and_reversed_copies_unwrap() {
     let corners = [Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::Z, Vec3::NEG_X];
     let fin = mesh(corners.to_vec(), vec![0, 1, 2, 0, 1, 3, 0, 1, 4, 0, 2, 1, 0, 3, 1, 0, 1, 2]);
     bake_and_check(&scene(vec![(fin, once())]), &settings(64));
@@ -122,7 +122,7 @@ fn b12_each_of_160_instances_has_its_own_texels() {
 }
 
 #[test]
-fn b16_coordinates_that_cannot_serve_are_replaced() {
+fn b16_coordinates_that_cannot_be_used_are_replaced() {
     let with = |uvs: Option<Vec<Vec2>>| {
         let mut two = triangles(&[[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X]]);
         two.texcoords = [uvs.clone(), uvs];

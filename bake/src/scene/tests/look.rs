@@ -31,7 +31,7 @@ const SOLID: [u8; 4] = [9, 9, 9, 255];
 
 /// B13.
 #[test]
-fn blended_surfaces_are_cut_at_one_half_and_are_air_where_nothing_reaches_it() {
+fn blended_surfaces_are_masked_at_one_half_and_invisible_where_nothing_reaches_it() {
     let blend = || json!({ "alphaMode": "BLEND" });
     assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Invisible, "glass");
@@ -127,7 +127,7 @@ fn a_lost_image_is_a_warning_for_colour_and_an_error_for_alpha() {
         for mode in ["MASK", "BLEND"] {
             b.root["materials"][0]["alphaMode"] = json!(mode);
             let refusal = b.refusal();
-            assert!(refusal.contains("materials[0] cuts its surface by the alpha of images[0]"), "{refusal}");
+            assert!(refusal.contains("materials[0] has an alpha mask in images[0]"), "{refusal}");
             assert!(refusal.contains(cause), "{refusal}");
         }
     }

@@ -36,7 +36,9 @@ fn everything() -> Builder {
     });
     let bind = b.floats(&[glam::Mat4::IDENTITY.to_cols_array()]);
     let indices = b.indices(&[0, 1, 2, 2, 1, 0]);
-    let attributes = json!({ "TEXCOORD_0": uv, "TEXCOORD_1": uv, "COLOR_0": color, "NORMAL": delta, "JOINTS_0": joints, "WEIGHTS_0": weights });
+    let attributes = json!({
+        "TEXCOORD_0": uv, "TEXCOORD_1": uv, "COLOR_0": color, "NORMAL": delta, "JOINTS_0": joints, "WEIGHTS_0": weights,
+    });
     let primitive = json!({ "indices": indices, "material": 0, "targets": [{ "POSITION": delta }] });
     let mesh = b.triangle_mesh_of(attributes, primitive);
     b.push("skins", json!({ "joints": [1], "inverseBindMatrices": bind }));

@@ -29,7 +29,8 @@ fn rewrite(scene: &Scene) -> (WrittenScene, Scene) {
     (written, again)
 }
 
-/// Two nodes with one mesh of two primitives, one of which has two triangles, under a turned parent far from the origin.
+/// Two nodes with one mesh of two primitives, one of which has two triangles, under a turned parent far from the
+/// origin.
 fn two_by_two() -> Builder {
     let mut b = Builder::new();
     let mesh = b.triangle_mesh(json!({}));
