@@ -16,9 +16,12 @@
 pub mod ambient;
 pub mod atlas;
 mod bake;
+#[cfg(feature = "cli")]
+pub mod console;
 #[cfg(feature = "report")]
 pub mod cost;
 pub mod disk;
+mod error;
 pub mod glb;
 pub mod heat;
 pub mod intervals;
@@ -27,15 +30,12 @@ mod loss;
 pub mod loss_map;
 pub mod maps;
 pub mod plan;
-#[cfg(feature = "cli")]
-pub mod printing;
 pub mod progress;
+mod remedy;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod scene;
 pub mod settings;
-#[cfg(feature = "cli")]
-pub mod signals;
 pub mod sun;
 #[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
@@ -43,5 +43,9 @@ pub mod testing;
 pub mod texels;
 pub mod trace;
 pub mod visibility;
+mod warning;
 
 pub use bake::{Bake, BakeError, BakeReport, Prepared, bake, bake_scene, prepare, sun_path};
+pub use error::{ErrorClass, Explain};
+pub use remedy::{Remedy, Setting};
+pub use warning::{Light, Warning};

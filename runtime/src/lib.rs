@@ -14,6 +14,7 @@ pub mod camera;
 #[cfg(feature = "report")]
 pub mod compare;
 pub mod drawn_sides;
+mod error;
 pub mod gpu;
 pub mod image;
 pub mod light;

@@ -16,10 +16,7 @@ pub enum AtlasError {
         requirement: &'static str,
     },
     /// The requested density needs too many texels.
-    #[error(
-        "{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed: \
-         lower the density"
-    )]
+    #[error("{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed")]
     TooDense {
         /// Requested density, in texels per metre.
         density_per_metre: f64,
@@ -29,10 +26,7 @@ pub enum AtlasError {
         most: u64,
     },
     /// Charts do not fit at any density.
-    #[error(
-        "{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density: \
-         use larger pages"
-    )]
+    #[error("{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density")]
     PageTooSmall {
         /// Number of charts.
         charts: usize,

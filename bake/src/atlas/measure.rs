@@ -4,6 +4,7 @@ use super::arrange::{AtlasMesh, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density};
 use crate::scene::Scene;
+use crate::warning::Warning;
 use rayon::prelude::*;
 
 /// Area of all triangles on all pages, in texels.
@@ -36,7 +37,7 @@ pub(super) fn fit_warning(
     settings: &AtlasSettings,
     items: &[AtlasMesh],
     atlas: &Atlas,
-) -> Option<String> {
+) -> Option<Warning> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
     let reached = |item: &AtlasMesh| {
         let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.0)).sum();
@@ -45,12 +46,13 @@ pub(super) fn fit_warning(
     let short: Vec<_> = items.iter().map(|i| (reached(i), i)).filter(|(d, _)| *d < 0.9 * asked).collect();
     let (least, item) = short.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
     let mesh = &scene.meshes[scene.instances[item.instances[0].0].mesh];
-    let (count, side) = (short.len(), settings.page_size_texels);
-    let name = mesh.name.as_deref().unwrap_or("without a name");
-    Some(format!(
-        "{count} meshes do not fit a page of {side} texels at {asked} texels a metre; mesh {name} gets {least:.3}: \
-         use larger pages"
-    ))
+    Some(Warning::LessDensity {
+        meshes: short.len(),
+        page_size_texels: settings.page_size_texels,
+        asked_per_metre: asked,
+        mesh: mesh.name.clone().unwrap_or_else(|| "without a name".into()),
+        reached_per_metre: *least,
+    })
 }
 
 /// Meshes with the file's own layout whose islands are too close together at their final size.
@@ -68,15 +70,10 @@ pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -
 }
 
 /// A warning if some meshes have a `TEXCOORD_1` that could not be used.
-pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<String> {
+pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<Warning> {
     let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
     let is_refused =
         |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
     let count = items.iter().filter(is_refused).count();
-    (settings.keeps_existing && count > 0).then(|| {
-        format!(
-            "TEXCOORD_1 of {count} meshes tiles, overlaps, has no area or has islands too close together: \
-             they were unwrapped"
-        )
-    })
+    (settings.keeps_existing && count > 0).then_some(Warning::Unwrapped { meshes: count })
 }

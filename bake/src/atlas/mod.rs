@@ -5,6 +5,7 @@
 //! `[x, x + 1] / width` by `[y, y + 1] / height`; row 0 is v = 0, the top of the PNG and of a wgpu texture.
 
 use crate::scene::Mesh;
+use crate::warning::Warning;
 use glam::{DVec2, DVec3, Vec2};
 
 mod arrange;
@@ -85,8 +86,8 @@ pub struct Atlas {
     pub texels_per_metre: f64,
     /// Number of charts over all pages.
     pub chart_count: usize,
-    /// What the user should know about the layout: one sentence each.
-    pub warnings: Vec<String>,
+    /// What the user should know about the layout.
+    pub warnings: Vec<Warning>,
 }
 
 impl Atlas {

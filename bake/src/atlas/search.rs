@@ -7,6 +7,7 @@ use super::arrange::{Arrangement, AtlasMesh, AtlasPlan};
 use super::error::AtlasError;
 use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::{AtlasSettings, Density};
+use crate::warning::Warning;
 
 /// The search stops when the density is known to this factor.
 const DENSITY_TOLERANCE: f64 = 1.004;
@@ -19,7 +20,7 @@ const LEAST_SHARE: f64 = 1e-4;
 pub(super) fn find_plan(
     settings: &AtlasSettings,
     items: &mut [AtlasMesh],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     meter: &ProgressMeter,
 ) -> Result<AtlasPlan, AtlasError> {
     match settings.density {
@@ -57,7 +58,7 @@ fn plan_for_pages(
     settings: &AtlasSettings,
     pages: u32,
     items: &[AtlasMesh],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     meter: &ProgressMeter,
 ) -> Result<AtlasPlan, AtlasError> {
     let mut count = pages;
@@ -68,11 +69,8 @@ fn plan_for_pages(
             }
             // One large mesh may have limited the density; the rest may fit on fewer pages.
             let plan = arrangement(settings, items).compactly(density, count).unwrap_or(plan);
-            warnings.push(format!(
-                "the charts take {} pages of {} texels; a larger --size takes fewer",
-                plan.page_sizes().len(),
-                settings.page_size_texels
-            ));
+            let page_size_texels = settings.page_size_texels;
+            warnings.push(Warning::ManyPages { pages: plan.page_sizes().len(), page_size_texels });
             return Ok(plan);
         }
         count *= 2;

@@ -3,6 +3,7 @@
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, Layout, PageSize, Placement};
 use crate::scene::Scene;
+use crate::warning::Warning;
 use glam::Vec2;
 use rayon::prelude::*;
 
@@ -44,12 +45,8 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     Some(Atlas { pages: vec![size], layouts, placements, texels_per_metre, chart_count: meshes.len(), warnings })
 }
 
-fn density_warning(settings: &AtlasSettings, reached: f64) -> Option<String> {
+fn density_warning(settings: &AtlasSettings, reached: f64) -> Option<Warning> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
-    (reached < 0.99 * asked).then(|| {
-        format!(
-            "TEXCOORD_1 fills one page, so the density is {reached:.3} texels a metre instead of {asked}: \
-             use larger pages"
-        )
-    })
+    let warning = Warning::DensityGiven { asked_per_metre: asked, reached_per_metre: reached };
+    (reached < 0.99 * asked).then_some(warning)
 }

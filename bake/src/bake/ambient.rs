@@ -12,6 +12,7 @@ use crate::glb;
 use crate::progress::BakeStage;
 use crate::scene::ShadingNormals;
 use crate::settings::AmbientRequest;
+use crate::warning::Warning;
 
 /// What ambient light is baked with.
 #[derive(Clone, Copy)]
@@ -159,28 +160,16 @@ impl FinerSamples {
     }
 }
 
-/// What a user should know of it.
-pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if entry.unsettled_texels > 0 {
-        let (count, most) = (entry.unsettled_texels, request.estimate.rays);
-        let more = if most < MOST_RAYS { "give a larger --ao-rays" } else { "that is as many as there are" };
-        warnings.push(format!(
-            "{count} texels may still be off by more than --ao-error {} after {most} rays; {more}, or a larger --ao-error",
-            request.estimate.error.unwrap_or_default()
-        ));
-    }
-    if entry.supersample < request.supersample {
-        warnings.push(format!(
-            "pages are too large for --ao-supersample {}: it was {} on some; give a smaller --size for more",
-            request.supersample, entry.supersample
-        ));
-    }
-    warnings
+/// What a caller should know of it.
+pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Warning> {
+    let unsettled = (entry.unsettled_texels > 0).then(|| Warning::AmbientUnsettled {
+        texels: entry.unsettled_texels,
+        error: request.estimate.error.unwrap_or_default(),
+        rays: request.estimate.rays,
+    });
+    let (asked, used) = (request.supersample, entry.supersample);
+    unsettled.into_iter().chain((used < asked).then_some(Warning::FewerPoints { asked, used })).collect()
 }
-
-/// Most rays that may be asked for.
-const MOST_RAYS: u32 = 65_536;
 
 /// What the manifest says of it.
 pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEntry {

@@ -9,6 +9,7 @@ use crate::maps::{Bits, StoredBits};
 use crate::scene::{self, LoadError, LoadLimits, Scene};
 use crate::settings::BakeSettings;
 use crate::sun::SunPath;
+use crate::warning::Warning;
 use std::path::Path;
 use std::time::Instant;
 
@@ -30,7 +31,7 @@ pub struct Bake {
     /// The bytes of the scene with ambient visibility at its vertices, if that was asked for.
     pub vertices_glb: Option<Vec<u8>>,
     /// What a user should know: one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Bake {
@@ -66,7 +67,7 @@ pub(super) struct Rest {
     pub manifest: Manifest,
     pub scene_glb: Vec<u8>,
     pub vertices_glb: Option<Vec<u8>>,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Writes what a set has beside its pages and moves it into place. Gives the manifest as written.

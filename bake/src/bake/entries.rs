@@ -9,6 +9,7 @@ use crate::lamp::{LampKey, LampPath};
 use crate::scene::{Alpha, Scene};
 use crate::settings::BakeSettings;
 use crate::sun::{self, SunPath};
+use crate::warning::{Light, Warning};
 
 /// What the manifest says of the request; the rest is left empty.
 pub(super) fn manifest_of(prepared: &Prepared, atlas: &Atlas, settings: &BakeSettings) -> Manifest {
@@ -94,29 +95,19 @@ pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenSc
     written.primitives_of_instances.iter().enumerate().map(entry).collect()
 }
 
-/// Most layers that may be asked for.
-const MOST_LAYERS: u64 = 16;
-
-/// Advice where slots ran out, in words that know the flag already given: of the sun and of the lamp, a sentence each.
-pub(super) fn loss_warnings(manifest: &Manifest, settings: &BakeSettings) -> Vec<String> {
-    let sun = loss_warning(&manifest.error, manifest.stats.most_intervals, "", settings);
-    let lamp = manifest.lamp.as_ref();
-    let lamp = lamp.and_then(|lamp| loss_warning(&lamp.error, lamp.stats.most_intervals, " of the lamp", settings));
-    sun.into_iter().chain(lamp).collect()
-}
-
-fn loss_warning(error: &ErrorEntry, most_intervals: u64, of_what: &str, settings: &BakeSettings) -> Option<String> {
-    let needed = most_intervals.div_ceil(4);
-    let advice = match needed {
-        ..=MOST_LAYERS => format!("--layers {needed} keeps them all"),
-        _ if settings.layer_cap as u64 >= MOST_LAYERS => "that is as many as there are".into(),
-        _ => format!("--layers {MOST_LAYERS} keeps more of them"),
+/// Where slots ran out: of the sun, of the lamp.
+pub(super) fn loss_warnings(manifest: &Manifest, settings: &BakeSettings) -> Vec<Warning> {
+    let warning = |light, error: &ErrorEntry, most_intervals: u64| {
+        (error.merged_texels > 0).then(|| Warning::Merged {
+            light,
+            texels: error.merged_texels,
+            layer_cap: settings.layer_cap,
+            worst_min: error.merge_min.worst,
+            needed_layers: most_intervals.div_ceil(4),
+        })
     };
-    (error.merged_texels > 0).then(|| {
-        format!(
-            "{} texels have more intervals{of_what} than --layers {} holds: the worst is wrong for {:.1} minutes of the day; \
-             {advice}",
-            error.merged_texels, settings.layer_cap, error.merge_min.worst
-        )
-    })
+    let sun = warning(Light::Sun, &manifest.error, manifest.stats.most_intervals);
+    let lamp = manifest.lamp.as_ref();
+    let lamp = lamp.and_then(|lamp| warning(Light::Lamp, &lamp.error, lamp.stats.most_intervals));
+    sun.into_iter().chain(lamp).collect()
 }

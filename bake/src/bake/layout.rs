@@ -4,15 +4,17 @@ use super::BakeError;
 use crate::ambient::Estimate;
 use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, Sample};
 use crate::progress::{BakeStage, Progress};
+use crate::remedy::Setting;
 use crate::scene::Scene;
 use crate::settings::{AmbientRequest, BakeSettings};
+use crate::warning::Warning;
 
 /// Unwraps as asked, or, where a mesh has too many charts for a page, with less around each, or on larger pages. Gives the
 /// settings that it came to.
 pub(crate) fn unwrap_somehow(
     scene: &Scene,
     asked: &BakeSettings,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     progress: &dyn Progress,
 ) -> Result<(Atlas, BakeSettings), BakeError> {
     let mut settings = asked.clone();
@@ -43,14 +45,17 @@ pub(crate) fn unwrap_somehow(
 /// Largest page that is tried.
 const LARGEST_PAGE_TEXELS: u32 = 16_384;
 
-/// What the user asked for and did not get, with the flag that spares the search.
-fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> String {
-    let [padding, edge] = [settings.padding_texels, settings.page_size_texels];
-    let had = format!("a mesh has too many charts for a page of {} texels", asked.page_size_texels);
-    if edge == asked.page_size_texels {
-        return format!("{had} with --padding {}: it was baked with --padding {padding}", asked.padding_texels);
+/// What was asked for and could not be had.
+fn settled_for(settings: &BakeSettings, asked: &BakeSettings) -> Warning {
+    let (asked_texels, used_texels) = (asked.page_size_texels, settings.page_size_texels);
+    if asked_texels != used_texels {
+        return Warning::PageEnlarged { asked_texels, used_texels };
     }
-    format!("{had}: it was baked on pages of {edge}; give --size {edge} or more, or simplify the mesh")
+    Warning::PaddingReduced {
+        page_size_texels: asked_texels,
+        asked_texels: asked.padding_texels,
+        used_texels: settings.padding_texels,
+    }
 }
 
 fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
@@ -119,9 +124,9 @@ pub(super) fn check_memory(scene: &Scene, settings: &BakeSettings, page_size_tex
             lanes => format!("a page of {page_size_texels} x {page_size_texels} texels in {lanes} lanes"),
         } + if lamps > 0 { " with a lamp" } else { "" },
         smaller: match (settings.lane_count, settings.ambient.map_or(1, |request| request.supersample)) {
-            (2.., _) => "--size or --lanes",
-            (_, 2..) => "--size or --ao-supersample",
-            _ => "--size",
+            (2.., _) => vec![Setting::PageSize, Setting::Lanes],
+            (_, 2..) => vec![Setting::PageSize, Setting::AoSupersample],
+            _ => vec![Setting::PageSize],
         },
         needed_mib: needed >> 20,
         allowed_mib: settings.max_memory_bytes >> 20,

@@ -2,6 +2,7 @@
 
 use super::BakeError;
 use crate::scene::{Alpha, Scene};
+use crate::warning::Warning;
 
 /// Share of texels that never see the sun above which a user is asked whether a shell shades the scene.
 const SUSPICIOUS_SHARE: f64 = 0.75;
@@ -23,15 +24,9 @@ pub(super) fn leave_out(scene: &mut Scene, names: &[String]) -> Result<(), BakeE
 }
 
 /// A word to the user of a scene that is dark nearly everywhere.
-pub(super) fn darkness_warning(dark_texels: u64, texels: u64) -> Option<String> {
+pub(super) fn darkness_warning(dark_texels: u64, texels: u64) -> Option<Warning> {
     let share = dark_texels as f64 / (texels as f64).max(1.0);
-    (share > SUSPICIOUS_SHARE).then(|| {
-        format!(
-            "{:.0} % of the texels never see the sun; if that is wrong, something may enclose the scene, as an outline hull \
-             or a sky dome does: name its material to --leave-out",
-            100.0 * share
-        )
-    })
+    (share > SUSPICIOUS_SHARE).then_some(Warning::Dark { share })
 }
 
 #[cfg(test)]
@@ -54,6 +49,6 @@ mod tests {
     fn only_scenes_that_are_dark_nearly_everywhere_are_remarked_on() {
         assert_eq!(darkness_warning(70, 100), None);
         assert_eq!(darkness_warning(0, 0), None);
-        assert!(darkness_warning(90, 100).is_some_and(|w| w.contains("90 %") && w.contains("--leave-out")));
+        assert!(darkness_warning(90, 100).is_some_and(|w| w.to_string().contains("90 %") && w.remedy().is_some()));
     }
 }

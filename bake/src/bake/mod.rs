@@ -17,11 +17,13 @@ use crate::lamp::{self, LampError, LampFileError, LampPath};
 use crate::maps::Lane;
 use crate::plan::{Effect, EffectPlan, LayersNeeded};
 use crate::progress::{BakeStage, Progress};
+use crate::remedy::Setting;
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice, SunRequest};
 use crate::sun::{self, DayError, DayOutcome, KeyedError, LightError, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::Engine;
+use crate::warning::Warning;
 use ambient::Sky;
 pub use baked::Bake;
 use baked::{PageFiles, PageSink, Rest, stored_bits, write_rest};
@@ -53,10 +55,10 @@ pub enum BakeError {
     #[error(transparent)]
     Lamp(#[from] LampError),
     /// Two lamps are asked for.
-    #[error("--path and --lamp both bring a lamp, and a set holds one: give one of them")]
+    #[error("the path file and the lamp file both bring a lamp, and a set holds one")]
     TwoLamps,
     /// The engine finds no lamps.
-    #[error("--engine {0} does not find when a lamp is seen: give exact or rays:N")]
+    #[error("the engine {0} does not find when a lamp is seen")]
     LampEngine(EngineChoice),
     /// The scene's light makes no path.
     #[error(transparent)]
@@ -70,7 +72,7 @@ pub enum BakeError {
         known: String,
     },
     /// The scene cannot be laid out.
-    #[error("{0}; give another --size, --padding or --texels-per-metre")]
+    #[error(transparent)]
     Atlas(AtlasError),
     /// The listener asked to stop.
     #[error("stopped before the end; nothing was written")]
@@ -82,28 +84,28 @@ pub enum BakeError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// More memory is needed than allowed.
-    #[error(
-        "{what} needs about {needed_mib} MiB of memory and {allowed_mib} MiB are allowed: \
-         give a smaller {smaller}, or a larger --max-memory"
-    )]
+    #[error("{what} needs about {needed_mib} MiB of memory and {allowed_mib} MiB are allowed")]
     Memory {
         /// What needs it.
         what: String,
-        /// The flag that makes it need less.
-        smaller: &'static str,
+        /// Settings of which a smaller value makes it need less.
+        smaller: Vec<Setting>,
         /// How much, in MiB.
         needed_mib: u64,
         /// How much is allowed, in MiB.
         allowed_mib: u64,
     },
     /// The threads cannot be started.
-    #[error("cannot start {threads} threads: {reason}; give a smaller --threads")]
+    #[error("cannot start {threads} threads: {reason}")]
     Threads {
         /// How many were asked for.
         threads: usize,
         /// What the system says.
         reason: String,
     },
+    /// OpenEXR is asked for, and the feature `exr` is off.
+    #[error("this build writes no OpenEXR, which ambient numbers and loss maps are stored as")]
+    NoExr,
 }
 
 impl From<AtlasError> for BakeError {
@@ -112,7 +114,7 @@ impl From<AtlasError> for BakeError {
             AtlasError::Cancelled => Self::Cancelled,
             AtlasError::TooDense { density_per_metre, texels, most } => Self::Memory {
                 what: format!("a density of {density_per_metre} texels a metre (about {texels} texels)"),
-                smaller: "--texels-per-metre",
+                smaller: vec![Setting::TexelsPerMetre],
                 needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
                 allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,
             },
@@ -126,8 +128,8 @@ impl From<AtlasError> for BakeError {
 pub struct BakeReport {
     /// The manifest as written.
     pub manifest: Manifest,
-    /// What a user should know: one sentence each.
-    pub warnings: Vec<String>,
+    /// What a caller should know.
+    pub warnings: Vec<Warning>,
 }
 
 /// A scene read and its plan made: what `--explain` shows, before anything is spent.
@@ -141,8 +143,8 @@ pub struct Prepared {
     pub lamp: Option<LampPath>,
     /// What will be baked and why.
     pub plan: EffectPlan,
-    /// What a user should know.
-    pub warnings: Vec<String>,
+    /// What a caller should know.
+    pub warnings: Vec<Warning>,
     pub(crate) load_seconds: f64,
 }
 
@@ -150,6 +152,9 @@ pub struct Prepared {
 pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progress) -> Result<Prepared, BakeError> {
     progress.start(BakeStage::Load, 0);
     let started = Instant::now();
+    if !cfg!(feature = "exr") && (settings.loss_map || settings.ambient.is_some_and(|request| request.exr)) {
+        return Err(BakeError::NoExr);
+    }
     let limits = LoadLimits { max_memory_bytes: settings.max_memory_bytes };
     let prepared = prepare_scene(scene::load(scene_file, &limits)?, settings)?;
     Ok(Prepared { load_seconds: started.elapsed().as_secs_f64(), ..prepared })
@@ -158,7 +163,7 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
 /// Decides what to bake of a scene.
 fn prepare_scene(mut scene: Scene, settings: &BakeSettings) -> Result<Prepared, BakeError> {
     leave_out(&mut scene, &settings.leave_out)?;
-    let mut warnings = scene.warnings.clone();
+    let mut warnings: Vec<Warning> = scene.warnings.iter().cloned().map(Warning::Scene).collect();
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
     let path = if is_lamp_alone { None } else { sun_path(&settings.sun, &scene, &mut warnings)? };
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
@@ -360,7 +365,11 @@ fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
 }
 
 /// The sun that is asked for, over a scene; none, with a warning that says so, where it does not rise.
-pub fn sun_path(request: &SunRequest, scene: &Scene, warnings: &mut Vec<String>) -> Result<Option<SunPath>, BakeError> {
+pub fn sun_path(
+    request: &SunRequest,
+    scene: &Scene,
+    warnings: &mut Vec<Warning>,
+) -> Result<Option<SunPath>, BakeError> {
     let request = match (request, scene.sun_direction) {
         (SunRequest::Keyed { json, north_deg }, _) => return Ok(Some(sun::parse_keyed(json, *north_deg)?)),
         (SunRequest::SceneOr(_), Some(direction)) => {
@@ -372,11 +381,8 @@ pub fn sun_path(request: &SunRequest, scene: &Scene, warnings: &mut Vec<String>)
     match sun::day(request)? {
         DayOutcome::Path(path) => Ok(Some(path)),
         DayOutcome::NoSun { highest_elevation_deg, .. } => {
-            warnings.push(format!(
-                "the sun does not rise at latitude {} on {}: its centre stays at least {:.1} degrees below the horizon, so \
-                 there is no sun; choose another --date for one",
-                request.latitude_deg, request.date, -highest_elevation_deg
-            ));
+            let (latitude_deg, date) = (request.latitude_deg, request.date);
+            warnings.push(Warning::NoSunrise { latitude_deg, date, highest_elevation_deg });
             Ok(None)
         }
     }

@@ -2,9 +2,9 @@
 
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use sunbake::console::SunArgs;
 use sunbake::maps::Bits;
 use sunbake::settings::{EngineChoice, VertexAttribute};
-use sunbake::sun::{Date, parse_place};
 
 /// Bakes when every texel of a glTF scene sees the sun.
 #[derive(Debug, Parser)]
@@ -84,7 +84,7 @@ pub struct BakeArgs {
     #[arg(long, value_name = "MATERIAL")]
     pub leave_out: Vec<String>,
     #[command(flatten)]
-    pub sun: SunArgs,
+    pub sun: PathArgs,
     #[command(flatten)]
     pub lamp: LampArgs,
     #[command(flatten)]
@@ -109,22 +109,9 @@ pub struct BakeArgs {
 
 #[derive(Debug, ClapArgs)]
 #[command(next_help_heading = "Sun")]
-pub struct SunArgs {
-    /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
-    #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
-    pub place: Option<[f64; 2]>,
-    /// Local date. [default: 2026-06-21]
-    ///
-    /// The path runs from sunrise to sunset of that day unless --window says otherwise. Sunrise and sunset are those of
-    /// the centre of the sun's disc on a level horizon, without refraction.
-    #[arg(long, value_name = "YYYY-MM-DD")]
-    pub date: Option<Date>,
-    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
-    pub utc_offset: Option<f64>,
-    /// Degrees that north is turned from -Z towards +X.
-    #[arg(long, value_name = "DEG", default_value_t = 0.0, allow_hyphen_values = true)]
-    pub north: f64,
+pub struct PathArgs {
+    #[command(flatten)]
+    pub day: SunArgs,
     /// Part of the day to bake, by local clocks; may pass midnight. [default: sunrise to sunset]
     #[arg(long, value_name = "HH:MM-HH:MM", value_parser = parse_window)]
     pub window: Option<[f64; 2]>,
@@ -288,7 +275,7 @@ pub struct CostCommandArgs {
     #[arg(long, value_name = "MATERIAL")]
     pub leave_out: Vec<String>,
     #[command(flatten)]
-    pub sun: SunArgs,
+    pub sun: PathArgs,
     /// Edge of the page on whose texels knobs are turned, 64 to 16384. Whole bakes have sizes of their own.
     #[arg(long, value_name = "N", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(64..=16384))]
     pub size: u32,

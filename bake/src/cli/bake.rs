@@ -1,27 +1,24 @@
 //! `sunbake bake`.
 
-use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, Preset, SunArgs};
-use super::exit::Failure;
-use super::out::{print, print_json, warn};
+use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, PathArgs, Preset};
 use super::summary;
-use super::terminal::TerminalProgress;
 use std::path::Path;
 use sunbake::BakeReport;
 use sunbake::atlas::Density;
+use sunbake::console::{Command, Failure, ProgressLine, print, print_json, warn_all};
 use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
-use sunbake::sun::DayRequest;
 
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let settings = settings(args)?;
-    let progress = TerminalProgress::new(args.output_manners.quiet);
+    let progress = ProgressLine::new(args.output_manners.quiet).listening();
     let target = match &args.output {
         Some(target) if !args.explain => target,
         _ => return explain(args, &settings, &progress),
     };
     let baked = sunbake::bake(&args.scene, target, args.force, &settings, &progress);
     progress.clear();
-    let report = baked.map_err(|error| Failure::of_bake(error, progress.signal_code()))?;
+    let report = baked.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
     tell(args, target, &report)
 }
 
@@ -29,7 +26,7 @@ fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failu
     let OutputArgs { json, quiet, verbose } = args.output_manners;
     let manifest = &report.manifest;
     if !quiet {
-        warn(&report.warnings);
+        warn_all(&report.warnings, Command::Sunbake);
     }
     if json {
         return print_json(manifest);
@@ -46,13 +43,13 @@ fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failu
 }
 
 /// Reads the scene and says what a bake of it would do.
-fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &TerminalProgress) -> Result<(), Failure> {
+fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &ProgressLine) -> Result<(), Failure> {
     let prepared = sunbake::prepare(&args.scene, settings, progress);
     progress.clear();
-    let prepared = prepared.map_err(|error| Failure::of_bake(error, progress.signal_code()))?;
+    let prepared = prepared.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
     let OutputArgs { json, quiet, .. } = args.output_manners;
     if !quiet {
-        warn(&prepared.warnings);
+        warn_all(&prepared.warnings, Command::Sunbake);
     }
     let entries = prepared.plan.entries();
     match (json, quiet) {
@@ -173,14 +170,9 @@ fn path_file(file: &Path, flag: &str) -> Result<String, Failure> {
 }
 
 /// The sun that options ask for.
-pub(super) fn sun(given: &SunArgs) -> Result<SunRequest, Failure> {
-    if let Some(file) = &given.path {
-        let json = path_file(file, "--path")?;
-        return Ok(SunRequest::Keyed { json, north_deg: given.north });
+pub(super) fn sun(given: &PathArgs) -> Result<SunRequest, Failure> {
+    match &given.path {
+        Some(file) => Ok(SunRequest::Keyed { json: path_file(file, "--path")?, north_deg: given.day.north_deg() }),
+        None => given.day.request(given.window),
     }
-    let day = DayRequest::new(given.place, given.date).map_err(|e| Failure::usage(e.to_string()))?;
-    let request = DayRequest { utc_offset_h: given.utc_offset, north_deg: given.north, window: given.window, ..day };
-    let names_a_day =
-        given.place.is_some() || given.date.is_some() || given.window.is_some() || given.utc_offset.is_some();
-    Ok(if names_a_day { SunRequest::Day(request) } else { SunRequest::SceneOr(request) })
 }

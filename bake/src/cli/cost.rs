@@ -2,13 +2,10 @@
 
 use super::args::CostCommandArgs;
 use super::bake::sun;
-use super::exit::Failure;
-use super::out::{print, print_json, warn};
-use super::terminal::TerminalProgress;
 use std::fmt::Write;
-use sunbake::BakeError;
+use sunbake::console::{Failure, ProgressLine, print, print_json, warn};
 use sunbake::cost::report::{CostReport, CostRow};
-use sunbake::cost::{self, CostError, CostSettings};
+use sunbake::cost::{self, CostSettings};
 use sunbake::report::folder::{self, REPORT_HTML, REPORT_JSON};
 use sunbake::report::{plain, with_unit};
 
@@ -22,24 +19,21 @@ pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
         threads: args.threads,
         max_memory_bytes: args.max_memory,
     };
-    let progress = TerminalProgress::new(args.output_manners.quiet);
+    let progress = ProgressLine::new(args.output_manners.quiet).listening();
     // The folder before anything is spent: nobody should wait for a report that cannot be kept.
-    let folder = folder::begin(&args.output, args.force, REPORT_JSON).map_err(CostError::from)?;
+    let folder = folder::begin(&args.output, args.force, REPORT_JSON)?;
     let measured = cost::cost(&args.scene, &settings, folder.path(), &progress);
     progress.clear();
-    let report = measured.map_err(|error| match error {
-        CostError::Bake(error) => Failure::of_bake(error, progress.signal_code()),
-        error => error.into(),
-    })?;
+    let report = measured.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
     let files = [(REPORT_JSON, report.json().into_bytes()), (REPORT_HTML, cost::html(&report).into_bytes())];
-    folder::finish(folder, &files).map_err(CostError::from)?;
+    folder::finish(folder, &files)?;
     tell(args, &report)
 }
 
 fn tell(args: &CostCommandArgs, report: &CostReport) -> Result<(), Failure> {
     let manners = args.output_manners;
     if !manners.quiet {
-        warn(&report.warnings);
+        report.warnings.iter().for_each(|sentence| warn(sentence));
     }
     match (manners.json, manners.quiet) {
         (true, _) => print_json(report),
@@ -73,19 +67,4 @@ fn line(row: &CostRow) -> String {
     let open = row.open.map_or(String::new(), |error| format!("{} of openness", plain(error.mean, 3)));
     let note = row.note.as_deref().unwrap_or_default();
     format!("  {:<18}{seconds:>10}  {sun:<20}{open:<20}{note}\n", row.name).trim_end().to_owned() + "\n"
-}
-
-impl From<CostError> for Failure {
-    fn from(error: CostError) -> Self {
-        let code = match error {
-            CostError::Bake(error) => return error.into(),
-            CostError::Read(error) => return error.into(),
-            CostError::Load(error) => return BakeError::Load(error).into(),
-            CostError::Folder(_) => 2,
-            CostError::NoSun(_) => 1,
-            CostError::NoSurface => 3,
-            CostError::Moved { .. } => 4,
-        };
-        Self { code, error: error.into() }
-    }
 }

@@ -1,9 +1,8 @@
 //! `sunbake inspect`.
 
 use super::args::InspectArgs;
-use super::exit::Failure;
-use super::out::{print, print_json};
 use super::summary;
+use sunbake::console::{Failure, print, print_json};
 use sunbake::disk::read::read;
 
 /// Prints a set's manifest, whole or in words. The textures are read too, so that a broken set does not pass.

@@ -1,18 +1,15 @@
-//! The command line: parse, run, print what went wrong, exit.
+//! The command line: options, and what each command does with them. `sunbake::console` is the rest.
 
 mod args;
 mod bake;
 mod cost;
-mod exit;
 mod inspect;
-mod out;
 mod summary;
-mod terminal;
 mod texels;
 
 use args::{Args, Command};
-use clap::Parser;
 use std::process::ExitCode;
+use sunbake::console;
 
 /// What `sunbake` alone prints.
 const BASICS: &str = "\
@@ -27,14 +24,7 @@ sunbake bakes when every texel of a glTF scene sees the sun.
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
-    if std::env::args_os().len() < 2 {
-        return exit::report(|| out::print(BASICS));
-    }
-    let args = match Args::try_parse() {
-        Ok(args) => args,
-        Err(error) => return exit::usage(&error),
-    };
-    exit::report(|| match args.command {
+    console::Command::Sunbake.run(BASICS, |args: Args| match args.command {
         Command::Bake(args) => bake::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Texels(args) => texels::run(&args),

@@ -1,8 +1,7 @@
 //! `sunbake texels`: covered texels as JSON lines, for checking a bake with another ray tracer.
 
 use super::args::TexelsArgs;
-use super::exit::Failure;
-use super::out::print;
+use sunbake::console::{Failure, print};
 use sunbake::disk::read::read;
 use sunbake::texels::draw;
 

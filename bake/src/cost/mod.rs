@@ -83,7 +83,7 @@ pub enum CostError {
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// There is no sun to measure by.
-    #[error("{0}: cost measures by the sun, so give another --date, --place or --path")]
+    #[error("{0}, and costs are measured by the sun")]
     NoSun(String),
     /// There is nothing to measure.
     #[error("the scene has no surface to bake, so there is nothing to measure")]
@@ -140,7 +140,7 @@ pub fn cost(
         reference,
         sweeps,
         advice: Vec::new(),
-        warnings: workload.warnings().to_vec(),
+        warnings: workload.warnings().iter().map(ToString::to_string).collect(),
     };
     report.warnings.extend(crowded(&report));
     report.advice = advice::words(&report);

@@ -14,6 +14,7 @@ use crate::settings::BakeSettings;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
 use crate::visibility::{Engine, Intervals, solve_visibility};
+use crate::warning::Warning;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -33,7 +34,7 @@ pub(super) struct Workload {
     pub page: Page,
     /// Seconds that every bake takes before its first texel: reading, unwrapping, building the hierarchy.
     pub fixed_s: f64,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
     load: Mutex<Load>,
 }
 
@@ -93,7 +94,7 @@ impl Workload {
         &self.path
     }
 
-    pub fn warnings(&self) -> &[String] {
+    pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
@@ -190,7 +191,7 @@ fn neighbours(scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> Vec<Sample> 
 }
 
 fn no_sun(prepared: &Prepared) -> CostError {
-    let why = if prepared.lamp.is_some() { "--path is a lamp's" } else { "the sun does not rise" };
+    let why = if prepared.lamp.is_some() { "the path file is a lamp's" } else { "the sun does not rise" };
     CostError::NoSun(why.into())
 }
 

@@ -26,16 +26,13 @@ pub struct FolderKind {
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// The target is there already.
-    #[error("{} exists: choose another folder with -o, or replace it with --force", target.display())]
+    #[error("{} exists", target.display())]
     Exists {
         /// The target.
         target: PathBuf,
     },
     /// The target is there and is something else, so it is not replaced even by force.
-    #[error(
-        "{} exists and is not {what}, so --force will not replace it: choose another folder with -o, or remove it yourself",
-        target.display()
-    )]
+    #[error("{} exists and is not {what}, so it is never replaced", target.display())]
     NotOurs {
         /// The target.
         target: PathBuf,
@@ -43,7 +40,7 @@ pub enum FolderError {
         what: &'static str,
     },
     /// The target's parent folder is missing, or cannot be written.
-    #[error("cannot write in {}: {source}; choose another folder with -o", folder.display())]
+    #[error("cannot write in {}: {source}", folder.display())]
     Folder {
         /// The parent.
         folder: PathBuf,
@@ -51,7 +48,7 @@ pub enum FolderError {
         source: std::io::Error,
     },
     /// A file could not be written.
-    #[error("cannot write {name}: {source}; nothing was left behind, so make room or choose another folder with -o")]
+    #[error("cannot write {name}: {source}; nothing was left behind")]
     File {
         /// Its name within the folder.
         name: String,

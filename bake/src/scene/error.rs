@@ -95,7 +95,7 @@ pub enum LoadError {
     },
     /// More memory would be needed than is allowed.
     #[error(
-        "{what} needs {} more, but only {} of the {} allowed are left; raise --max-memory, or simplify the scene",
+        "{what} needs {} more, but only {} of the {} allowed are left",
         size(*needed_bytes), size(*left_bytes), size(*limit_bytes)
     )]
     TooLarge {
@@ -148,27 +148,7 @@ fn size(bytes: u64) -> String {
     }
 }
 
-/// Which exit code an error belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ErrorClass {
-    /// A file could not be read (exit code 2).
-    Io,
-    /// The input is bad (exit code 3).
-    BadInput,
-    /// The input asks for what sunbake does not do (exit code 3).
-    Unsupported,
-}
-
 impl LoadError {
-    /// The class that decides the exit code.
-    pub fn class(&self) -> ErrorClass {
-        match self {
-            Self::Read { .. } => ErrorClass::Io,
-            Self::Extension { .. } | Self::Version { .. } => ErrorClass::Unsupported,
-            _ => ErrorClass::BadInput,
-        }
-    }
-
     pub(super) fn structure(place: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Structure { place: place.into(), problem: problem.into() }
     }

@@ -53,28 +53,44 @@ impl MemoryBudget {
     }
 }
 
-/// Warnings while loading. Equal sentences about several places are counted and reported once.
+/// Something in a scene that was not read as the file has it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneWarning {
+    /// What is wrong, and what was done about it.
+    pub problem: String,
+    /// Where in the file, for example `meshes[1] primitive 0`: the first place of its kind.
+    pub place: String,
+    /// How many places more have the same problem.
+    pub more: usize,
+}
+
+impl std::fmt::Display for SceneWarning {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self.more {
+            0 => write!(f, "{}: {}", self.place, self.problem),
+            more => write!(f, "{} and {more} more: {}", self.place, self.problem),
+        }
+    }
+}
+
+/// Warnings while loading. Equal problems of several places are counted and reported once.
 #[derive(Default)]
 pub(super) struct WarningLog {
-    entries: Vec<(String, String, usize)>,
+    warnings: Vec<SceneWarning>,
 }
 
 impl WarningLog {
-    /// Adds a warning: `sentence` is about `place`.
-    pub fn warn(&mut self, sentence: impl Into<String>, place: impl Into<String>) {
-        let sentence = sentence.into();
-        match self.entries.iter_mut().find(|(known, _, _)| *known == sentence) {
-            Some((_, _, count)) => *count += 1,
-            None => self.entries.push((sentence, place.into(), 1)),
+    /// Notes that `place` has this problem.
+    pub fn warn(&mut self, problem: impl Into<String>, place: impl Into<String>) {
+        let problem = problem.into();
+        match self.warnings.iter_mut().find(|known| known.problem == problem) {
+            Some(known) => known.more += 1,
+            None => self.warnings.push(SceneWarning { problem, place: place.into(), more: 0 }),
         }
     }
 
-    /// One line for each sentence, in the order of their first place.
-    pub fn into_sentences(self) -> Vec<String> {
-        let say = |(sentence, place, count)| match count {
-            1 => format!("{place}: {sentence}"),
-            _ => format!("{place} and {} more: {sentence}", count - 1),
-        };
-        self.entries.into_iter().map(say).collect()
+    /// The warnings, in the order in which they were first noted.
+    pub fn into_warnings(self) -> Vec<SceneWarning> {
+        self.warnings
     }
 }

@@ -77,7 +77,7 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
         centre_m,
         half_extent_m: (bounds.high - bounds.low) * 0.5,
         dropped: drawn.dropped,
-        warnings: log.into_sentences(),
+        warnings: log.into_warnings(),
     })
 }
 
@@ -101,7 +101,7 @@ fn no_triangles(path: &Path, drawn: &DrawnMeshes, log: WarningLog) -> LoadError 
     let counted = [(repeated_index, "repeat an index"), (zero_area, "have no area"), (non_finite, "are not finite")];
     let dropped = counted.iter().filter(|(count, _)| *count > 0);
     let mut reasons: Vec<String> = dropped.map(|(count, what)| format!("{count} of its triangles {what}")).collect();
-    reasons.extend(log.into_sentences().into_iter().take(3));
+    reasons.extend(log.into_warnings().iter().take(3).map(ToString::to_string));
     if reasons.is_empty() {
         reasons.push("no node of its default scene draws a mesh; put its meshes under nodes of that scene".into());
     }

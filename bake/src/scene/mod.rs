@@ -45,9 +45,9 @@ mod shading;
 mod tests;
 mod triangles;
 
-pub use error::{ErrorClass, LoadError};
+pub use error::LoadError;
 pub use geometry::{Geometry, SurfaceTriangle};
-pub use limits::LoadLimits;
+pub use limits::{LoadLimits, SceneWarning};
 pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
 pub use resources::sha256;
@@ -85,8 +85,8 @@ pub struct Scene {
     pub half_extent_m: DVec3,
     /// Triangles that were read and left out, by reason.
     pub dropped: Dropped,
-    /// What the user should know about how the file was read: one sentence each, with the cause and what was done.
-    pub warnings: Vec<String>,
+    /// What the user should know about how the file was read.
+    pub warnings: Vec<SceneWarning>,
 }
 
 /// The file a scene was read from.

@@ -20,12 +20,10 @@ use super::{PathError, SunArc, SunPath};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LightError {
     /// Zero or not finite.
-    #[error("the light's direction {0} is no direction: check its node's matrix, or give --place or --path")]
+    #[error("the light's direction {0} is no direction: check its node's matrix")]
     Direction(DVec3),
     /// Shines upwards or level.
-    #[error(
-        "the light stands {elevation_deg:.2} degrees above the horizon, so it is no sun: aim it down, or give --place or --path"
-    )]
+    #[error("the light stands {elevation_deg:.2} degrees above the horizon, so it is no sun: aim it down")]
     BelowHorizon {
         /// Elevation of the direction towards the light.
         elevation_deg: f64,

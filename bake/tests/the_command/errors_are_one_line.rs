@@ -170,7 +170,7 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_scene_is_read() {
         ("out/letter.txt", &[], &["out/letter.txt exists", "-o", "--force"]),
         ("out/letter.txt", &["--force"], &["is not a baked set", "-o"]),
         ("out", &[], &["out exists", "-o", "--force"]),
-        ("out", &["--force"], &["is not a baked set", "--force will not replace it"]),
+        ("out", &["--force"], &["is not a baked set", "never replaced"]),
     ];
     for (target, options, words) in cases {
         let arguments = [&["bake", "nowhere.glb", "-o", target], options].concat();

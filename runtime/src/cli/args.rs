@@ -5,13 +5,16 @@ use super::place::parse_camera;
 use super::when::parse_when;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use sunbake::sun::{Date, parse_place};
+use sunbake::console::SunArgs;
 use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::light::{TimeChoice, WITHOUT_END};
 use sunbake_runtime::shadow_maps::{Bias, Variant};
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::volumes::Mode;
 use sunbake_runtime::{AmbientModel, Filter};
+
+/// Heading of the options of a sun: a set has its own.
+pub const SUN_HEADING: &str = "Sun of a scene that is not baked";
 
 /// Plays sunbake's maps back at any time of the day.
 #[derive(Debug, Parser)]
@@ -51,7 +54,7 @@ pub struct FrameArgs {
     /// for shade and 65535 for full sun, and a visibility EXR has one channel, Y.
     #[arg(short, long, value_name = "FILE")]
     pub output_file: PathBuf,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = SUN_HEADING)]
     pub sun: SunArgs,
     #[command(flatten)]
     pub look: LookArgs,
@@ -74,7 +77,7 @@ pub struct FramesArgs {
     /// It gets frame_0000.png and so on, contact.png with all of them small, and day.png, an animated PNG.
     #[arg(short, long = "folder", value_name = "DIR")]
     pub output_folder: PathBuf,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = SUN_HEADING)]
     pub sun: SunArgs,
     #[command(flatten)]
     pub look: LookArgs,
@@ -107,31 +110,6 @@ pub struct DemoArgs {
     pub threads: usize,
     #[command(flatten)]
     pub manners: MannersArgs,
-}
-
-/// The sun over a scene that is not baked: a set has its own.
-#[derive(Debug, Clone, ClapArgs)]
-#[command(next_help_heading = "Sun of a scene that is not baked")]
-pub struct SunArgs {
-    /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
-    #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
-    pub place: Option<[f64; 2]>,
-    /// Local date; the path runs from sunrise to sunset. [default: 2026-06-21]
-    #[arg(long, value_name = "YYYY-MM-DD")]
-    pub date: Option<Date>,
-    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
-    pub utc_offset: Option<f64>,
-    /// Degrees that north is turned from -Z towards +X. [default: 0]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
-    pub north: Option<f64>,
-}
-
-impl SunArgs {
-    /// Whether any of it is given.
-    pub fn is_given(&self) -> bool {
-        self.place.is_some() || self.date.is_some() || self.utc_offset.is_some() || self.north.is_some()
-    }
 }
 
 /// What is printed.

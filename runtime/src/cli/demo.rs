@@ -1,15 +1,13 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
 use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
-use super::draw::{open_gpu, set_threads, technique, view};
-use super::exit::Failure;
+use super::draw::{open_gpu, technique, view};
 use super::files::{displayed, make_folder, write_rgb};
-use super::out;
-use super::terminal::Terminal;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use sunbake::BakeReport;
+use sunbake::console::{Command, Failure, ProgressLine, print, print_json, sentence, set_threads};
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{Date, DayRequest};
 use sunbake_runtime::camera::CameraChoice;
@@ -56,31 +54,30 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     set_threads(args.threads)?;
     make_folder(&args.output)?;
     let set = args.output.join("set");
-    let terminal = Terminal::new(args.manners.quiet);
+    let progress = ProgressLine::new(args.manners.quiet);
     let scene = args.scene.clone().map_or_else(own_scene, Ok)?;
-    let baked = bake(args, &scene, &set, &terminal)?;
+    let baked = bake(args, &scene, &set, &progress)?;
     let stage = Stage::read(&set)?;
     let look = look(args);
     let shot = Shot::new(&stage, view(&stage, &look)?);
     let gpu = open_gpu(&look, args.manners.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &look)?;
-    terminal.begin("drawing the day, baked and traced", u64::from(args.count));
+    progress.begin("drawing the day, baked and traced", u64::from(args.count));
     let mut columns = Vec::new();
     for i in 0..args.count {
         let t = (f64::from(i) + 0.5) / f64::from(args.count);
         columns.push(draw_column(technique.as_mut(), &shot, t)?);
-        terminal.step(1);
+        progress.step(1);
     }
     let contact = args.output.join("contact.png");
     write_rgb(&contact, &sheet(&columns, &baked).draw())?;
-    drop(terminal);
+    drop(progress);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let summary = Summary::new(contact, set, &baked, &columns, renderer, start.elapsed().as_secs_f64());
     if args.manners.json {
-        let text = serde_json::to_string_pretty(&summary).map_err(|e| Failure::io(e.to_string()))?;
-        out::print(&(text + "\n"))?;
+        print_json(&summary)?;
     } else if !args.manners.quiet {
-        out::print(&summary.text())?;
+        print(&summary.text())?;
     }
     Ok(())
 }
@@ -94,9 +91,9 @@ fn own_scene() -> Result<PathBuf, Failure> {
     })
 }
 
-fn bake(args: &DemoArgs, scene: &Path, set: &Path, terminal: &Terminal) -> Result<BakeReport, Failure> {
+fn bake(args: &DemoArgs, scene: &Path, set: &Path, progress: &ProgressLine) -> Result<BakeReport, Failure> {
     let [year, month, day] = DATE;
-    let date = Date::new(year as i32, month, day).map_err(|e| Failure::usage(e.to_string()))?;
+    let date = Date::new(year as i32, month, day)?;
     let sun = SunRequest::Day(DayRequest {
         latitude_deg: PLACE_DEG[0],
         longitude_deg: PLACE_DEG[1],
@@ -107,7 +104,7 @@ fn bake(args: &DemoArgs, scene: &Path, set: &Path, terminal: &Terminal) -> Resul
     });
     let settings =
         BakeSettings { page_size_texels: args.page_size, threads: args.threads, ..BakeSettings::standard(sun) };
-    Ok(sunbake::bake(scene, set, true, &settings, terminal)?)
+    Ok(sunbake::bake(scene, set, true, &settings, progress)?)
 }
 
 fn look(args: &DemoArgs) -> LookArgs {
@@ -197,7 +194,7 @@ fn mib(bytes: u64) -> f64 {
 struct Summary<'a> {
     contact: PathBuf,
     set: PathBuf,
-    warnings: &'a [String],
+    warnings: Vec<String>,
     bake_seconds: f64,
     bytes: u64,
     renderer: &'a str,
@@ -219,7 +216,7 @@ impl<'a> Summary<'a> {
         Self {
             contact,
             set,
-            warnings: &baked.warnings,
+            warnings: baked.warnings.iter().map(|warning| sentence(warning, Command::Sunplay)).collect(),
             bake_seconds: bake_seconds(baked),
             bytes: baked.manifest.stats.bytes,
             renderer,

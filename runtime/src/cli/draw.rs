@@ -1,13 +1,10 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
-use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, SunArgs, TechniqueChoice};
-use super::exit::Failure;
+use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use clap::ValueEnum;
 use std::path::Path;
-use sunbake::BakeError;
+use sunbake::console::{Command, Failure, SunArgs, tell, warn_all};
 use sunbake::scene::LoadLimits;
-use sunbake::settings::SunRequest;
-use sunbake::sun::DayRequest;
 use sunbake_runtime::gpu::{Gpu, GpuError, Output, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::stage::MAX_SCENE_BYTES;
@@ -38,7 +35,7 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
     let Some(live) = live(look.technique) else { return open_adapter(look.renderer, quiet) };
     match Gpu::open() {
         Ok(gpu) => Ok(Some(gpu)),
-        Err(GpuError::NoAdapter { reason }) => Err(Failure::unsupported(format!(
+        Err(GpuError::NoAdapter { reason }) => Err(Failure::unavailable(format!(
             "{live} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), or draw \
              --technique {}",
             instead(look.technique)
@@ -56,7 +53,7 @@ pub fn open_adapter(renderer: RendererChoice, quiet: bool) -> Result<Option<Gpu>
         Ok(gpu) => Ok(Some(gpu)),
         Err(GpuError::NoAdapter { .. }) if renderer == RendererChoice::Auto => {
             if !quiet {
-                eprintln!("no GPU adapter found: drawing on the CPU");
+                tell("no GPU adapter found: drawing on the CPU");
             }
             Ok(None)
         }
@@ -112,7 +109,7 @@ pub fn technique<'a>(
             Box::new(ShadowMaps::new(gpu, stage, map_settings(look, variant))?)
         }
         (None, TechniqueChoice::Volumes(_) | TechniqueChoice::Map(_)) => {
-            return Err(Failure::unsupported(format!("{} by a GPU", live(look.technique).unwrap_or_default())));
+            return Err(Failure::unavailable(format!("{} by a GPU", live(look.technique).unwrap_or_default())));
         }
         (_, TechniqueChoice::Truth(truth)) => Box::new(truth),
     })
@@ -217,22 +214,13 @@ fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The sun that is asked for, over a scene that is not baked.
-pub fn sun_request(sun: &SunArgs) -> Result<SunRequest, Failure> {
-    let day = DayRequest::new(sun.place, sun.date).map_err(|e| Failure::usage(e.to_string()))?;
-    let day = DayRequest { utc_offset_h: sun.utc_offset, north_deg: sun.north.unwrap_or(0.0), ..day };
-    let names_a_day = sun.place.is_some() || sun.date.is_some() || sun.utc_offset.is_some();
-    Ok(if names_a_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) })
-}
-
 /// A scene that is not baked, under a sun.
 fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {
-    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })
-        .map_err(|error| Failure::from(BakeError::Load(error)))?;
-    let request = sun_request(sun)?;
+    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+    let request = sun.request(None)?;
     let mut warnings = Vec::new();
-    let path = sunbake::sun_path(&request, &scene, &mut warnings).map_err(|e| Failure::usage(e.to_string()))?;
-    warnings.iter().for_each(|warning| eprintln!("sunplay: {warning}"));
+    let path = sunbake::sun_path(&request, &scene, &mut warnings)?;
+    warn_all(&warnings, Command::Sunplay);
     Ok(Stage::plain(scene, path))
 }
 
@@ -303,13 +291,4 @@ pub fn draw(
         }
         OutputChoice::Visibility => Picture::Visibility(technique.visibility(shot, moment)?),
     })
-}
-
-/// Sets the number of threads that draw.
-pub fn set_threads(threads: usize) -> Result<(), Failure> {
-    if threads == 0 {
-        return Ok(());
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    pool.map_err(|e| Failure::unsupported(format!("cannot start {threads} threads: {e}; give a smaller --threads")))
 }

@@ -1,8 +1,8 @@
 //! Pictures into files.
 
-use super::exit::Failure;
 use glam::Vec3;
 use std::path::Path;
+use sunbake::console::Failure;
 use sunbake_runtime::Raster;
 use sunbake_runtime::light::{codes_from_display, display_from_light};
 

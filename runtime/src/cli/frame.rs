@@ -1,12 +1,11 @@
 //! `sunplay frame`.
 
 use super::args::FrameArgs;
-use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
-use super::exit::Failure;
+use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, stage, technique, view};
 use super::files::{kind, write_color, write_visibility};
-use super::out;
 use serde_json::json;
 use std::time::Instant;
+use sunbake::console::{Failure, print, print_json, set_threads};
 use sunbake_runtime::Shot;
 use sunbake_runtime::light::clock_label;
 
@@ -38,10 +37,10 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
             "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(), "details": technique.details(),
         });
-        out::print(&format!("{report:#}\n"))?;
+        print_json(&report)?;
     } else if !args.manners.quiet {
         let (set, file) = (args.set.display(), args.output_file.display());
-        out::print(&format!("{set} at {clock} -> {file} ({seconds:.2} s on {renderer})\n"))?;
+        print(&format!("{set} at {clock} -> {file} ({seconds:.2} s on {renderer})\n"))?;
     }
     Ok(())
 }

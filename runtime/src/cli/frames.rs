@@ -1,13 +1,11 @@
 //! `sunplay frames`.
 
 use super::args::FramesArgs;
-use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, set_threads, stage, technique, view};
-use super::exit::Failure;
+use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, stage, technique, view};
 use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
-use super::out;
-use super::terminal::Terminal;
 use serde_json::json;
 use std::time::Instant;
+use sunbake::console::{Failure, ProgressLine, print, print_json, set_threads};
 use sunbake_runtime::light::clock_label;
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
 use sunbake_runtime::{Raster, Shot};
@@ -27,8 +25,8 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     let gpu = open_gpu(&args.look, args.manners.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
     make_folder(&args.output_folder)?;
-    let terminal = Terminal::new(args.manners.quiet);
-    terminal.begin("drawing the day", u64::from(args.count));
+    let progress = ProgressLine::new(args.manners.quiet);
+    progress.begin("drawing the day", u64::from(args.count));
     let start = Instant::now();
     let mut small: Vec<(Raster<[u8; 3]>, String)> = Vec::new();
     let mut moving = Vec::new();
@@ -46,13 +44,13 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
         drawn.push(json!({ "file": name, "t": t, "clock": clock }));
         small.push((thumbnail(&picture, SHEET_PICTURE_WIDTH), clock));
         moving.push(thumbnail(&picture, ANIMATION_WIDTH));
-        terminal.step(1);
+        progress.step(1);
     }
     let seconds = start.elapsed().as_secs_f64();
     write_rgb(&args.output_folder.join("contact.png"), &contact_sheet(&small, columns(args.count)))?;
     let delay_ms = (ANIMATION_MS[0] / args.count).clamp(20, ANIMATION_MS[1]) as u16;
     write_animation(&args.output_folder.join("day.png"), &moving, delay_ms)?;
-    drop(terminal);
+    drop(progress);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let last = moment(&stage, &args.look, (f64::from(args.count) - 0.5) / f64::from(args.count))?;
     let effects = technique.effects(&shot, kind_of(&last, args.output));
@@ -66,10 +64,10 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
             "bytes": technique.bytes(), "gpu": technique.census(), "effects": effects.entries(),
             "plan": technique.plan(), "details": technique.details(),
         });
-        out::print(&format!("{report:#}\n"))?;
+        print_json(&report)?;
     } else if !args.manners.quiet {
         let folder = args.output_folder.display();
-        out::print(&format!(
+        print(&format!(
             "{} pictures in {seconds:.1} s on {renderer}\n  {folder}/contact.png   all of them small\n  \
              {folder}/day.png       an animated PNG\n",
             args.count

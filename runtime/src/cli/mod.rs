@@ -1,21 +1,18 @@
-//! The command line: parse, run, print what went wrong, exit.
+//! The command line: options, and what each command does with them. `sunbake::console` is the rest.
 
 mod args;
 mod compare;
 mod demo;
 mod draw;
-mod exit;
 mod files;
 mod frame;
 mod frames;
-mod out;
 mod place;
-mod terminal;
 mod when;
 
 use args::{Args, Command};
-use clap::Parser;
 use std::process::ExitCode;
+use sunbake::console;
 
 /// What `sunplay` alone prints.
 const BASICS: &str = "\
@@ -25,19 +22,12 @@ sunplay plays sunbake's maps back at any time of the day.
   sunplay frame baked --at 17:30 -o evening.png   one picture
   sunplay frames baked --count 12 -o day          a day: pictures, a contact sheet, an animation
   sunplay compare baked -o report                 what the bake loses, and what live shadows cost
-  sunplay frame --help                            every option";
+  sunplay frame --help                            every option
+";
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
-    if std::env::args_os().len() < 2 {
-        println!("{BASICS}");
-        return ExitCode::SUCCESS;
-    }
-    let args = match Args::try_parse() {
-        Ok(args) => args,
-        Err(error) => return exit::usage(&error),
-    };
-    exit::report(|| match args.command {
+    console::Command::Sunplay.run(BASICS, |args: Args| match args.command {
         Command::Frame(args) => frame::run(&args),
         Command::Frames(args) => frames::run(&args),
         Command::Compare(args) => compare::run(&args),

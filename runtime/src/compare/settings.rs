@@ -4,6 +4,7 @@ use super::{Limit, TechniqueSpec};
 use crate::camera::CameraChoice;
 use crate::light::TimeChoice;
 use std::path::PathBuf;
+use sunbake::Warning;
 use sunbake::progress::{Progress, Silent};
 use sunbake::settings::SunRequest;
 
@@ -60,7 +61,7 @@ pub trait CompareProgress: Progress {
     /// Drawing starts. [`Progress::advance`] follows once a frame, and drawing stops if [`Progress::is_cancelled`].
     fn start_drawing(&self, frame_count: u64);
     /// A scene was baked, and this is what the user should know of it. Called once, however many sets are baked.
-    fn baked(&self, _warnings: &[String]) {}
+    fn baked(&self, _warnings: &[Warning]) {}
 }
 
 impl CompareProgress for Silent {

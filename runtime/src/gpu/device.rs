@@ -18,15 +18,13 @@ pub struct Gpu {
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// There is none.
-    #[error(
-        "no GPU adapter found ({reason}); install a Vulkan driver (Mesa's lavapipe will do), or draw with --renderer cpu"
-    )]
+    #[error("no GPU adapter found ({reason})")]
     NoAdapter {
         /// What was tried.
         reason: String,
     },
     /// There is one, and it does not open.
-    #[error("the GPU {name} does not open: {reason}; draw with --renderer cpu")]
+    #[error("the GPU {name} does not open: {reason}")]
     NoDevice {
         /// Which.
         name: String,
@@ -34,7 +32,7 @@ pub enum GpuError {
         reason: String,
     },
     /// The set does not fit the adapter.
-    #[error("{what} is {needed}; this GPU takes {limit}: draw with --renderer cpu, or bake with a smaller --size")]
+    #[error("{what} is {needed}; this GPU takes {limit}")]
     Limit {
         /// What does not fit.
         what: String,
@@ -44,13 +42,19 @@ pub enum GpuError {
         limit: u64,
     },
     /// Shadow maps do not fit.
-    #[error("shadow maps of {mebibytes} MiB do not fit this GPU: give a smaller --map-size, or fewer --cascades")]
+    #[error("shadow maps of {mebibytes} MiB do not fit this GPU")]
     MapMemory {
         /// What they would take.
         mebibytes: u64,
     },
+    /// A picture does not fit.
+    #[error("the GPU failed making a picture of this size: {reason}")]
+    Picture {
+        /// What it says.
+        reason: String,
+    },
     /// It lacks what a technique is made of.
-    #[error("this GPU cannot {what} ({feature}): draw another --technique")]
+    #[error("this GPU cannot {what} ({feature})")]
     Lacks {
         /// What it cannot do.
         what: &'static str,
@@ -58,7 +62,7 @@ pub enum GpuError {
         feature: &'static str,
     },
     /// It failed while working.
-    #[error("the GPU failed {doing}: {reason}; draw with --renderer cpu")]
+    #[error("the GPU failed {doing}: {reason}")]
     Failed {
         /// At what.
         doing: &'static str,

@@ -1,10 +1,11 @@
 //! Every option of `sunplay compare`.
 
-use super::super::args::{RendererChoice, SunArgs, parse_size};
+use super::super::args::{RendererChoice, SUN_HEADING, parse_size};
 use super::super::place::parse_camera;
 use super::super::when::parse_when;
 use clap::Args as ClapArgs;
 use std::path::PathBuf;
+use sunbake::console::SunArgs;
 use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::Limit;
 use sunbake_runtime::light::TimeChoice;
@@ -68,7 +69,7 @@ pub struct CompareArgs {
     /// to hold for with --techniques.
     #[arg(long, value_name = "KEY=N", value_delimiter = ',')]
     pub fail_above: Vec<Limit>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = SUN_HEADING)]
     pub sun: SunArgs,
     /// What draws: the GPU if there is one, the GPU, or the CPU, which draws neither volumes nor maps.
     #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]

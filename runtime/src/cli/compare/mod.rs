@@ -2,12 +2,11 @@
 
 pub mod args;
 
-use super::draw::{open_adapter, set_threads, sun_request};
-use super::exit::Failure;
+use super::draw::open_adapter;
 use super::files::png_bytes;
-use super::out::print;
-use super::terminal::Terminal;
 use args::CompareArgs;
+use sunbake::Warning;
+use sunbake::console::{Command, Failure, ProgressLine, print, print_json, set_threads, warn_all};
 use sunbake::progress::{BakeStage, Progress};
 use sunbake::report::folder;
 use sunbake_runtime::compare::report::{LimitEntry, Report};
@@ -22,15 +21,13 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     let settings = settings(args)?;
     let folder = folder::begin(&args.output, args.force, folder::REPORT_JSON)?;
     let gpu = open_adapter(args.renderer, args.quiet)?;
-    let terminal = Terminal::new(args.quiet).listening();
-    let listener = Listener { terminal: &terminal, is_quiet: args.quiet };
-    let compared = compare::run(&settings, gpu.as_ref(), &listener).map_err(|error| {
-        let failure = Failure::from(error);
-        Failure { code: terminal.signal_code().unwrap_or(failure.code), ..failure }
-    })?;
-    terminal.begin("writing the report", 0);
+    let progress = ProgressLine::new(args.quiet).listening();
+    let listener = Listener { progress: &progress, is_quiet: args.quiet };
+    let compared = compare::run(&settings, gpu.as_ref(), &listener)
+        .map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
+    progress.begin("writing the report", 0);
     folder::finish(folder, &files(&compared)?)?;
-    terminal.clear();
+    progress.clear();
     print_report(args, &compared.report)
 }
 
@@ -62,7 +59,7 @@ fn source(args: &CompareArgs) -> Result<CompareSource, Failure> {
         }
         return Ok(CompareSource::Scene {
             file: from.clone(),
-            sun: sun_request(&args.sun)?,
+            sun: args.sun.request(None)?,
             page_size_texels: args.page_size,
             leave_out: args.leave_out.clone(),
         });
@@ -78,33 +75,33 @@ fn source(args: &CompareArgs) -> Result<CompareSource, Failure> {
 
 /// Shows how far a comparison is.
 struct Listener<'a> {
-    terminal: &'a Terminal,
+    progress: &'a ProgressLine,
     is_quiet: bool,
 }
 
 impl Progress for Listener<'_> {
     fn start(&self, stage: BakeStage, total: u64) {
-        self.terminal.start(stage, total);
+        self.progress.start(stage, total);
     }
 
     fn advance(&self, by: u64) {
-        self.terminal.advance(by);
+        self.progress.advance(by);
     }
 
     fn is_cancelled(&self) -> bool {
-        self.terminal.is_cancelled()
+        self.progress.is_cancelled()
     }
 }
 
 impl CompareProgress for Listener<'_> {
     fn start_drawing(&self, frame_count: u64) {
-        self.terminal.begin("comparing", frame_count);
+        self.progress.begin("comparing", frame_count);
     }
 
-    fn baked(&self, warnings: &[String]) {
+    fn baked(&self, warnings: &[Warning]) {
         if !self.is_quiet {
-            self.terminal.clear();
-            warnings.iter().for_each(|warning| eprintln!("sunplay: {warning}"));
+            self.progress.clear();
+            warn_all(warnings, Command::Sunplay);
         }
     }
 }
@@ -123,8 +120,7 @@ fn files(compared: &Compared) -> Result<Vec<(&'static str, Vec<u8>)>, Failure> {
 
 fn print_report(args: &CompareArgs, report: &Report) -> Result<(), Failure> {
     let printed = if args.json {
-        let text = serde_json::to_string_pretty(report).map_err(|e| Failure::io(e.to_string()))?;
-        print(&(text + "\n"))
+        print_json(report)
     } else if !args.quiet {
         print(&format!("{}{}\n", report.text(), args.output.join(folder::REPORT_HTML).display()))
     } else {

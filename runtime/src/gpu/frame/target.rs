@@ -137,7 +137,7 @@ fn make(
 ) -> Result<(wgpu::Texture, wgpu::TextureView), GpuError> {
     let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
     GpuError::check_limit("the longer edge of the picture", u64::from(width.max(height)), limit)?;
-    gpu.checked("making a picture of this size; give a smaller --size", || {
+    let made = gpu.checked("making a picture", || {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
@@ -150,5 +150,9 @@ fn make(
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         (texture, view)
+    });
+    made.map_err(|error| match error {
+        GpuError::Failed { reason, .. } => GpuError::Picture { reason },
+        error => error,
     })
 }

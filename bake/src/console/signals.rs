@@ -1,4 +1,4 @@
-//! Ctrl-C and its kin: what runs is asked to stop, and takes back what it made. A second one ends it on the spot.
+//! Ctrl-C and SIGTERM. The first asks the work to stop and to remove what it made; the second ends the process at once.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -12,12 +12,12 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// Starts to listen. Where that is refused, signals go on ending the process at once.
+    /// Starts to listen. If the system refuses, a signal ends the process at once, as without this.
     pub fn listen() -> Self {
         let signals = Self::default();
         for signal in [SIGINT, SIGTERM] {
             let again = Arc::new(AtomicBool::new(false));
-            // In this order: the first signal sets `again` after it was looked at.
+            // In this order: the first signal checks `again` before it sets it.
             let _ = flag::register_conditional_shutdown(signal, exit_code(signal as usize).into(), again.clone());
             let _ = flag::register(signal, again);
             let _ = flag::register_usize(signal, signals.number.clone(), signal as usize);
@@ -25,7 +25,7 @@ impl Signals {
         signals
     }
 
-    /// The exit code for the signal that came, if one did: 128 and its number, as shells have it.
+    /// The exit code for the signal that came, if one did: 128 plus its number, as shells have it.
     pub fn exit_code(&self) -> Option<u8> {
         Some(self.number.load(Ordering::Relaxed)).filter(|&number| number != 0).map(exit_code)
     }

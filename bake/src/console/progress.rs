@@ -1,41 +1,44 @@
-//! Progress on a terminal, and nowhere else.
+//! Progress: one line on stderr, if stderr is a terminal.
 
+use super::signals::Signals;
+use crate::progress::{BakeStage, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::Duration;
-use sunbake::progress::{BakeStage, Progress};
-use sunbake::signals::Signals;
 
-/// One line on stderr, while there is something to wait for.
-#[derive(Default)]
-pub struct Terminal {
-    is_quiet: bool,
+/// A line on stderr while there is something to wait for.
+#[derive(Debug)]
+pub struct ProgressLine {
+    is_drawn: bool,
     bar: Mutex<Option<ProgressBar>>,
+    /// What stages are part of; empty if they are part of nothing.
+    task: Mutex<String>,
     signals: Option<Signals>,
 }
 
-impl Terminal {
-    /// One that draws if stderr is a terminal and `quiet` is not asked for.
+impl ProgressLine {
+    /// Draws if stderr is a terminal and `quiet` is not asked for.
     pub fn new(quiet: bool) -> Self {
-        Self { is_quiet: quiet || !std::io::stderr().is_terminal(), bar: Mutex::default(), signals: None }
+        let is_drawn = !quiet && std::io::stderr().is_terminal();
+        Self { is_drawn, bar: Mutex::default(), task: Mutex::default(), signals: None }
     }
 
-    /// The same, which hears Ctrl-C: what it draws for is asked to stop, and takes back what it made.
+    /// The same, and hears Ctrl-C: whatever reports to it is then asked to stop.
     pub fn listening(mut self) -> Self {
         self.signals = Some(Signals::listen());
         self
     }
 
-    /// What to exit with, if a signal came.
+    /// What to exit with if a signal came.
     pub fn signal_code(&self) -> Option<u8> {
         self.signals.as_ref().and_then(Signals::exit_code)
     }
 
-    /// Starts on something that has `total` parts; 0 if it does not count.
-    pub fn begin(&self, what: &'static str, total: u64) {
+    /// Starts on something of `total` parts; 0 if parts are not counted.
+    pub fn begin(&self, what: impl Into<String>, total: u64) {
         self.clear();
-        if self.is_quiet {
+        if !self.is_drawn {
             return;
         }
         let (bar, template) = match total {
@@ -45,14 +48,14 @@ impl Terminal {
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style);
         }
-        bar.set_message(what);
+        bar.set_message(what.into());
         bar.enable_steady_tick(Duration::from_millis(200));
         if let Ok(mut current) = self.bar.lock() {
             *current = Some(bar);
         }
     }
 
-    /// Gets on by so many parts.
+    /// Counts so many parts more.
     pub fn step(&self, by: u64) {
         if let Ok(bar) = self.bar.lock()
             && let Some(bar) = bar.as_ref()
@@ -69,11 +72,24 @@ impl Terminal {
             bar.finish_and_clear();
         }
     }
+
+    fn message(&self, stage: BakeStage) -> String {
+        match self.task.lock() {
+            Ok(task) if !task.is_empty() => format!("{task}: {}", stage.verb()),
+            _ => stage.verb().into(),
+        }
+    }
 }
 
-impl Progress for Terminal {
+impl Progress for ProgressLine {
+    fn task(&self, name: &str) {
+        if let Ok(mut task) = self.task.lock() {
+            *task = name.into();
+        }
+    }
+
     fn start(&self, stage: BakeStage, total: u64) {
-        self.begin(stage.verb(), total);
+        self.begin(self.message(stage), total);
     }
 
     fn advance(&self, by: u64) {
@@ -85,7 +101,7 @@ impl Progress for Terminal {
     }
 }
 
-impl Drop for Terminal {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         self.clear();
     }

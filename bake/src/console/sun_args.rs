@@ -1,0 +1,51 @@
+//! The options that choose a sun by place and day.
+
+use super::Failure;
+use crate::settings::SunRequest;
+use crate::sun::{Date, DayRequest, parse_place};
+use clap::Args;
+
+/// The sun over a scene.
+#[derive(Debug, Clone, Args)]
+pub struct SunArgs {
+    /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
+    #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
+    pub place: Option<[f64; 2]>,
+    /// Local date. [default: 2026-06-21]
+    ///
+    /// The path runs from sunrise to sunset of that day, unless a window is given. Sunrise and sunset are those of the centre
+    /// of the sun's disc on a level horizon, without refraction.
+    #[arg(long, value_name = "YYYY-MM-DD")]
+    pub date: Option<Date>,
+    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    pub utc_offset: Option<f64>,
+    /// Degrees that north is turned from -Z towards +X. [default: 0]
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub north: Option<f64>,
+}
+
+impl SunArgs {
+    /// Whether any of it is given.
+    pub fn is_given(&self) -> bool {
+        self.names_a_day() || self.north.is_some()
+    }
+
+    fn names_a_day(&self) -> bool {
+        self.place.is_some() || self.date.is_some() || self.utc_offset.is_some()
+    }
+
+    /// Degrees that north is turned from -Z towards +X.
+    pub fn north_deg(&self) -> f64 {
+        self.north.unwrap_or(0.0)
+    }
+
+    /// The sun that is asked for: this day, or, where nothing names one, the scene's own light. `window` is minutes after
+    /// local midnight.
+    pub fn request(&self, window: Option<[f64; 2]>) -> Result<SunRequest, Failure> {
+        let day = DayRequest::new(self.place, self.date)?;
+        let day = DayRequest { utc_offset_h: self.utc_offset, north_deg: self.north_deg(), window, ..day };
+        let is_day = self.names_a_day() || window.is_some();
+        Ok(if is_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) })
+    }
+}

@@ -1,0 +1,178 @@
+//! What a caller should know of a bake that went well all the same.
+
+use crate::remedy::{Remedy, Setting};
+use crate::scene::SceneWarning;
+use crate::sun::Date;
+
+/// A light whose visibility is baked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Light {
+    /// The sun.
+    Sun,
+    /// The lamp.
+    Lamp,
+}
+
+/// Something that was done otherwise than asked, or that looks wrong. Its text says what; [`Warning::remedy`] what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Warning {
+    /// Something in the scene was not read as the file has it.
+    #[error("{0}")]
+    Scene(SceneWarning),
+    /// The sun stays below the horizon all day.
+    #[error(
+        "the sun does not rise at latitude {latitude_deg} on {date}: its centre stays at least {:.1} degrees below the \
+         horizon, so there is no sun",
+        -highest_elevation_deg
+    )]
+    NoSunrise {
+        /// Degrees north.
+        latitude_deg: f64,
+        /// The day.
+        date: Date,
+        /// Highest elevation of the sun's centre, in degrees: below 0.
+        highest_elevation_deg: f64,
+    },
+    /// A mesh has too many charts for a page, so charts are closer together than asked.
+    #[error(
+        "a mesh has too many charts for a page of {page_size_texels} texels with a padding of {asked_texels}: it was baked \
+         with a padding of {used_texels}"
+    )]
+    PaddingReduced {
+        /// Edge of the page, in texels.
+        page_size_texels: u32,
+        /// Padding asked for, in texels.
+        asked_texels: u32,
+        /// Padding it came to, in texels.
+        used_texels: u32,
+    },
+    /// A mesh has too many charts for a page, so pages are larger than asked.
+    #[error("a mesh has too many charts for a page of {asked_texels} texels: it was baked on pages of {used_texels}")]
+    PageEnlarged {
+        /// Edge asked for, in texels.
+        asked_texels: u32,
+        /// Edge it came to, in texels.
+        used_texels: u32,
+    },
+    /// Charts take more pages than asked.
+    #[error("the charts take {pages} pages of {page_size_texels} texels; larger pages take fewer")]
+    ManyPages {
+        /// How many.
+        pages: usize,
+        /// Edge of each, in texels.
+        page_size_texels: u32,
+    },
+    /// Some meshes do not get the density asked for.
+    #[error(
+        "{meshes} meshes do not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; mesh {mesh} \
+         gets {reached_per_metre:.3}"
+    )]
+    LessDensity {
+        /// How many.
+        meshes: usize,
+        /// Edge of a page, in texels.
+        page_size_texels: u32,
+        /// Texels a metre, asked for.
+        asked_per_metre: f64,
+        /// Name of the mesh that gets least.
+        mesh: String,
+        /// Texels a metre that it gets.
+        reached_per_metre: f64,
+    },
+    /// The file's own coordinates fill one page, which decides the density.
+    #[error(
+        "TEXCOORD_1 fills one page, so the density is {reached_per_metre:.3} texels a metre instead of {asked_per_metre}"
+    )]
+    DensityGiven {
+        /// Texels a metre, asked for.
+        asked_per_metre: f64,
+        /// Texels a metre that it came to.
+        reached_per_metre: f64,
+    },
+    /// The file's own coordinates could not be used.
+    #[error(
+        "TEXCOORD_1 of {meshes} meshes tiles, overlaps, has no area or has islands too close together: they were unwrapped"
+    )]
+    Unwrapped {
+        /// Of how many meshes.
+        meshes: usize,
+    },
+    /// Nearly nothing sees the sun.
+    #[error(
+        "{:.0} % of the texels never see the sun; if that is wrong, something may enclose the scene, as an outline hull or a \
+         sky dome does: leave its material out",
+        100.0 * share
+    )]
+    Dark {
+        /// Share of the texels, 0 to 1.
+        share: f64,
+    },
+    /// Texels have more intervals than their layers hold.
+    #[error(
+        "{texels} texels have more intervals{} than {layer_cap} layers hold: the worst is wrong for {worst_min:.1} minutes of \
+         the day, and {needed_layers} layers would keep them all",
+        if *light == Light::Lamp { " of the lamp" } else { "" }
+    )]
+    Merged {
+        /// Of which light.
+        light: Light,
+        /// How many texels.
+        texels: u64,
+        /// Layers that were allowed.
+        layer_cap: usize,
+        /// Most minutes that a texel is wrong for.
+        worst_min: f64,
+        /// Layers that would hold everything.
+        needed_layers: u64,
+    },
+    /// Rays ran out before the error was small enough.
+    #[error("{texels} texels may still be off by more than {error} after {rays} rays of sky")]
+    AmbientUnsettled {
+        /// How many texels.
+        texels: u64,
+        /// Error of ambient occlusion asked for.
+        error: f64,
+        /// Most rays a texel.
+        rays: u32,
+    },
+    /// Pages are too large for as many points a texel as asked.
+    #[error("pages are too large for {asked} x {asked} points a texel: some had {used} x {used}")]
+    FewerPoints {
+        /// Points along a texel's edge, asked for.
+        asked: u32,
+        /// What it came to on some pages.
+        used: u32,
+    },
+}
+
+/// Most layers that may be asked for.
+const MOST_LAYERS: u64 = 16;
+/// Most rays of sky that may be asked for.
+const MOST_RAYS: u32 = 65_536;
+
+impl Warning {
+    /// What to do about it, if a setting can help.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::Scene(_) | Self::PaddingReduced { .. } | Self::Unwrapped { .. } => None,
+            Self::NoSunrise { .. } => Some(Remedy::Change(Setting::Date)),
+            Self::PageEnlarged { used_texels, .. } => Some(Remedy::any([
+                Remedy::Set(Setting::PageSize, used_texels.to_string()),
+                Remedy::Do("simplify the mesh"),
+            ])),
+            Self::ManyPages { .. } | Self::LessDensity { .. } | Self::DensityGiven { .. } => {
+                Some(Remedy::Raise(Setting::PageSize))
+            }
+            Self::Dark { .. } => Some(Remedy::Set(Setting::LeaveOut, "MATERIAL".into())),
+            Self::Merged { layer_cap, .. } if *layer_cap as u64 >= MOST_LAYERS => None,
+            Self::Merged { needed_layers, .. } => {
+                Some(Remedy::Set(Setting::Layers, needed_layers.min(&MOST_LAYERS).to_string()))
+            }
+            Self::AmbientUnsettled { rays, .. } if *rays >= MOST_RAYS => Some(Remedy::Raise(Setting::AoError)),
+            Self::AmbientUnsettled { .. } => {
+                Some(Remedy::AnyOf([Setting::AoRays, Setting::AoError].map(Remedy::Raise).into()))
+            }
+            Self::FewerPoints { .. } => Some(Remedy::Lower(Setting::PageSize)),
+        }
+    }
+}
