@@ -1,13 +1,13 @@
-//! Shadow maps: what each variant and size takes, and how far it is from truth: `cargo bench -p sunbake-runtime --bench
+//! Shadow maps: cost and error of each variant and size: `cargo bench -p sunbake-runtime --bench
 //! shadow_maps`.
 //!
 //! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository), at times
-//! of day and through six cameras, two of them in shadow. Hard variants are held against truth of the sun's centre, soft ones
-//! against truth of its disc.
+//! of day and through six cameras, two of them in shadow. Hard variants are compared with truth of the sun's centre, soft ones with
+//! truth of its disc.
 //!
-//! Passes are timed by the adapter's own clock; on a software adapter that is what the CPU's threads took. The map pass is what a
-//! moving sun pays for each frame: under a still one, maps that do not follow the view are kept. Sampling is what the pass that
-//! lights takes beyond the same pass without comparisons.
+//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. Under a moving sun every frame draws its
+//! maps; under a still one, maps that do not follow the view are kept. Sampling is the time of the lighting pass beyond that of the same
+//! pass without comparisons.
 //!
 //! Options after `--`: `size=128 times=12` (pictures compared), `px=512 rounds=3` (pictures timed, at three times through three
 //! cameras), `maps=512,1024,2048,4096 scene=NAME variant=NAME only=errors|times|bias map=2048 where=1`.
@@ -21,7 +21,7 @@ use sunbake_runtime::compare::Defects;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique};
-use sunbake_runtime::testing::maps::{Day, defects_of};
+use sunbake_runtime::testing::maps::{ReferenceDay, defects_of};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask};
 use sunbake_runtime::{Moment, Shot, Stage, View};
 
@@ -47,7 +47,7 @@ fn main() {
         Ok(gpu) => gpu,
         Err(error) => return println!("{error}"),
     };
-    let clock = if gpu.is_software { "a software adapter: its times are the CPU's" } else { "a GPU" };
+    let clock = if gpu.is_software { "a software GPU: its times are the CPU's" } else { "a GPU" };
     println!("{}, {clock}", gpu.name);
     for file in common::scenes(&SHARED) {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -63,7 +63,7 @@ fn main() {
         };
         let at = |count: usize| (0..count).map(move |i| (i as f64 + 0.5) / count as f64);
         let errors = (wants("errors") || wants("bias"))
-            .then(|| Day::new(&stage, number("size", 128) as u32, at(number("times", 12))));
+            .then(|| ReferenceDay::new(&stage, number("size", 128) as u32, at(number("times", 12))));
         let frames = wants("times").then(|| Frames::new(&stage, number("px", 512) as u32, at(3), number("rounds", 3)));
         if wants("errors") || wants("times") {
             println!("\n{name}: {} triangles", stage.geometry.triangles.len());
@@ -90,7 +90,7 @@ struct Times {
     bytes: u64,
 }
 
-/// What is timed.
+/// The shots that are timed.
 struct Frames<'a> {
     stage: &'a Stage,
     all: Vec<(Moment, Vec<Shot<'a>>)>,
@@ -141,7 +141,14 @@ impl<'a> Frames<'a> {
     }
 }
 
-fn table(gpu: &Gpu, day: Option<&Day>, frames: Option<&Frames>, variants: &[Variant], sizes: &[u32], says_where: bool) {
+fn table(
+    gpu: &Gpu,
+    day: Option<&ReferenceDay>,
+    frames: Option<&Frames>,
+    variants: &[Variant],
+    sizes: &[u32],
+    says_where: bool,
+) {
     println!(
         "| variant | map | wrong | mean error | acne | leaks | fit | map pass | light pass | of it sampling | MiB |"
     );
@@ -185,7 +192,7 @@ fn errors_of(found: &Defects) -> String {
 }
 
 /// What each part of the bias is for.
-fn biases(gpu: &Gpu, name: &str, day: &Day, size_texels: u32) {
+fn biases(gpu: &Gpu, name: &str, day: &ReferenceDay, size_texels: u32) {
     println!("\n{name}: biases, maps of {size_texels}");
     println!("| variant | bias | wrong | mean error | acne | leaks |");
     println!("|---|---|---|---|---|---|");

@@ -1,12 +1,11 @@
-//! Shadow volumes: what each way of drawing them takes, and what each saving gives: `cargo bench -p sunbake-runtime`.
+//! Shadow volumes: the cost of each way of drawing them, and the gain of each saving: `cargo bench -p sunbake-runtime`.
 //!
 //! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository), at
-//! times of day and through cameras spread around, one of them in shadow. Leaves are solid, as volumes see them, so that
-//! errors are those of the technique. The rivals take turns, so that whatever else the machine does falls on all alike.
+//! times of day and through cameras spread around, one of them in shadow. Alpha masks are left out, as volumes ignore them, so that
+//! errors are those of the technique. The ways take turns, so that other load of the machine falls on all alike.
 //!
-//! Passes are timed by the adapter's own clock; on a software adapter that is what the CPU's threads took. A *still* frame
-//! finds the volumes of the last one; a *moving* one finds its own. Wrong are pixels that differ from hard truth, those at
-//! edges among them.
+//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. A *still* frame reuses the volumes of the
+//! last one; a *moving* frame computes its own. Wrong pixels are those that differ from hard truth, including those at edges.
 //!
 //! Options after `--`: `size=256 times=3 rounds=3 scene=NAME only=ways|savings|suns`.
 
@@ -29,7 +28,7 @@ const SHARED: [&str; 4] = [
     "two_cylinder_engine/2CylinderEngine.glb",
 ];
 
-/// Rays of what soft edges are measured against.
+/// Rays of the soft truth that soft edges are compared with.
 const SOFT_RAYS: u32 = 256;
 
 fn main() {
@@ -40,7 +39,7 @@ fn main() {
         Ok(gpu) => gpu,
         Err(error) => return println!("{error}"),
     };
-    let clock = if gpu.is_software { "a software adapter: its times are the CPU's" } else { "a GPU" };
+    let clock = if gpu.is_software { "a software GPU: its times are the CPU's" } else { "a GPU" };
     println!("{}, {clock}", gpu.name);
     for file in common::scenes(&SHARED) {
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -5,7 +5,7 @@ use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
-use sunbake_runtime::testing::maps::places;
+use sunbake_runtime::testing::maps::surface_points;
 use sunbake_runtime::testing::masks::{gpu, mask};
 use sunbake_runtime::testing::{standing_sun, view};
 use sunbake_runtime::{Shot, Stage};
@@ -28,7 +28,7 @@ fn edge_m(gpu: &Gpu, stage: &Stage, variant: Variant, size_texels: u32) -> f64 {
     let seen = maps.visibility(&shot, &stage.moment(0.5)).unwrap().pixels;
     let near = |low: f32, high: f32| {
         let within = |(i, p): &(usize, DVec3)| p.y.abs() < 1e-3 && p.z.abs() < 0.8 && (low..high).contains(&seen[*i]);
-        let all: Vec<f64> = places(&shot).into_iter().filter(within).map(|(_, p)| p.x).collect();
+        let all: Vec<f64> = surface_points(&shot).into_iter().filter(within).map(|(_, p)| p.x).collect();
         assert!(!all.is_empty(), "{variant}: nothing between {low} and {high}");
         all.iter().sum::<f64>() / all.len() as f64
     };

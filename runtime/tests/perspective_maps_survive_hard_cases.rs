@@ -6,7 +6,7 @@ use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{ShadowMaps, Technique};
-use sunbake_runtime::testing::maps::{Seen, places};
+use sunbake_runtime::testing::maps::{ReferenceShot, surface_points};
 use sunbake_runtime::testing::masks::{gpu, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::{Shot, Stage, View};
@@ -37,7 +37,7 @@ const AHEAD: DVec3 = DVec3::new(0.998_5, 0.0, -0.054);
 fn assert_sound(gpu: &Gpu, name: &str, towards: DVec3, most: f64) -> [usize; 2] {
     let stage = under_sun(field(), towards);
     let moment = stage.moment(0.5);
-    let seen = Seen::new(&stage, across(&stage), &moment);
+    let seen = ReferenceShot::new(&stage, across(&stage), &moment);
     BOTH.map(|variant| {
         let settings = MapSettings { size_texels: 1024, ..MapSettings::new(variant) };
         let mut maps = ShadowMaps::new(gpu, &stage, settings).unwrap();
@@ -101,7 +101,7 @@ fn p4_casters_behind_the_eye_cast_into_the_view() {
         let seen = maps.visibility(&shot, &moment).unwrap().pixels;
         let (mut dark, mut lit) = (0, 0);
         // The shadow is twice as long as the wall is high.
-        for (i, place) in places(&shot).into_iter().filter(|(_, p)| p.y < 1e-3) {
+        for (i, place) in surface_points(&shot).into_iter().filter(|(_, p)| p.y < 1e-3) {
             let away_m = place.x + 58.0;
             if away_m < 23.0 {
                 assert_eq!(seen[i], 0.0, "{variant} at {place}");
@@ -149,7 +149,7 @@ fn p6_the_faces_of_a_cube_meet_without_a_seam() {
         let settings = MapSettings { size_texels: 512, ..MapSettings::new(Variant::Cube) };
         let mut maps = ShadowMaps::new(&gpu, &stage, settings).unwrap();
         let seen = maps.visibility(&shot, &stage.moment(0.5)).unwrap().pixels;
-        assert!(places(&shot).into_iter().filter(|(_, p)| p.y > -0.5).all(|(i, _)| seen[i] == 1.0));
+        assert!(surface_points(&shot).into_iter().filter(|(_, p)| p.y > -0.5).all(|(i, _)| seen[i] == 1.0));
     }
     assert!(most > 1, "no sun needed more than one face");
 }

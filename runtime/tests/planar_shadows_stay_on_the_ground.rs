@@ -5,7 +5,7 @@ use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
-use sunbake_runtime::testing::maps::places;
+use sunbake_runtime::testing::maps::surface_points;
 use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, mask, under_sun};
 use sunbake_runtime::{Shot, Stage};
 
@@ -16,7 +16,7 @@ fn seen(gpu: &Gpu, shot: &Shot, variant: Variant) -> Vec<f32> {
 
 /// Pixels that show the ground, whose height is zero.
 fn on_ground(shot: &Shot) -> Vec<(usize, DVec3)> {
-    places(shot).into_iter().filter(|(_, p)| p.y.abs() < 1e-3).collect()
+    surface_points(shot).into_iter().filter(|(_, p)| p.y.abs() < 1e-3).collect()
 }
 
 #[test]

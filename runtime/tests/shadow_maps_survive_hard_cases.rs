@@ -6,7 +6,7 @@ use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
 use sunbake_runtime::technique::{ShadowMaps, Technique};
-use sunbake_runtime::testing::maps::{Seen, places};
+use sunbake_runtime::testing::maps::{ReferenceShot, surface_points};
 use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
@@ -38,7 +38,7 @@ fn seen(gpu: &Gpu, shot: &Shot, moment: &Moment, settings: MapSettings) -> Vec<f
 fn assert_no_defects(gpu: &Gpu, name: &str, stage: &Stage, view: View, settings: MapSettings) -> f64 {
     let moment = stage.moment(0.5);
     let mut maps = ShadowMaps::new(gpu, stage, settings).unwrap();
-    let found = Seen::new(stage, view, &moment).defects(&mut maps, &moment).unwrap();
+    let found = ReferenceShot::new(stage, view, &moment).defects(&mut maps, &moment).unwrap();
     println!(
         "{name} {} {}: {:.3} % wrong, mean {:.5}",
         settings.variant,
@@ -58,7 +58,7 @@ fn ground_that_casts() -> SceneBuilder {
 
 /// Whether a pixel shows the ground, not what is below it.
 fn shows_ground(shot: &Shot) -> Vec<usize> {
-    places(shot).into_iter().filter(|(_, place)| place.y > -0.5).map(|(i, _)| i).collect()
+    surface_points(shot).into_iter().filter(|(_, place)| place.y > -0.5).map(|(i, _)| i).collect()
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn m2_a_wall_a_texel_thick_stands_on_its_shadow_and_lets_nothing_through() {
         for variant in UNTUNED.into_iter().filter(|v| MapSettings::new(*v).gathers()) {
             let seen = seen(&gpu, &shot, &moment, sized(variant, 256));
             let end_m = 2.0 / height;
-            for (i, place) in places(&shot) {
+            for (i, place) in surface_points(&shot) {
                 let (from_foot_m, along) = (place.x - 0.5 * f64::from(texel_m), place.z.abs());
                 // What the filter reaches on the ground: more along the light, where it is stretched.
                 let reach_m = 4.0 * f64::from(texel_m) * (1.0 + 1.0 / height);
@@ -138,7 +138,7 @@ fn m3_a_caster_above_the_map_still_casts() {
         let settings = sized(variant, 512);
         let unclamped = MapSettings { means: Means { depth_clamp: false, ..Means::default() }, ..settings };
         let [clamped, unclamped] = [settings, unclamped].map(|settings| seen(&gpu, &shot, &moment, settings));
-        for (i, place) in places(&shot) {
+        for (i, place) in surface_points(&shot) {
             if place.x < -0.3 && place.x > -5.5 && place.y < 1e-3 && place.z.abs() < 5.5 {
                 assert!(
                     clamped[i] == 0.0 && unclamped[i] == 0.0,
@@ -167,7 +167,7 @@ fn m4_receivers_outside_the_map_are_lit_and_borders_do_not_smear() {
         let on_map = |p: DVec3| maps.renderer().maps().iter().any(|map| map.holds(p - stage.scene.centre_m, 0.0));
         let mut off_map = 0;
         // The roof lies within 1.2 m of the middle, and throws its shadow as far again.
-        for (i, place) in places(&shot) {
+        for (i, place) in surface_points(&shot) {
             let away_m = place.x.abs().max(place.z.abs());
             if place.y < 1e-3 && away_m > 2.6 {
                 assert_eq!(seen[i], 1.0, "{variant} at {place}");
@@ -235,7 +235,7 @@ fn m6_cascades_show_no_line_where_they_meet_and_do_not_read_each_other() {
         assert_eq!(maps.renderer().maps().len(), cascades);
         // Between the street's edge and the posts' shadows nothing but light, on every cascade and between them.
         let mut on_each = vec![0; cascades];
-        for (i, place) in places(&shot) {
+        for (i, place) in surface_points(&shot) {
             if place.y < 1e-3 && place.y > -1e-3 && place.z < -9.0 {
                 assert_eq!(seen[i], 1.0, "{cascades} cascades at {place}");
                 let held = maps.renderer().maps().iter().position(|m| m.holds(place - stage.scene.centre_m, 6.0));
@@ -260,7 +260,7 @@ fn m6_an_eye_beside_a_surface_in_shadow_sees_no_light() {
         let eye = DVec3::new(0.3, above_m, 0.2);
         let shot = Shot::new(&stage, view(&stage, eye, eye + DVec3::new(1.0, -0.4, 0.3), SIZE));
         let seen = seen(&gpu, &shot, &moment, sized(Variant::Cascades, 1024));
-        let dark = places(&shot).into_iter().filter(|(_, p)| p.x.abs().max(p.z.abs()) < 28.0);
+        let dark = surface_points(&shot).into_iter().filter(|(_, p)| p.x.abs().max(p.z.abs()) < 28.0);
         let lit: Vec<_> = dark.filter(|(i, _)| seen[*i] > 0.0).collect();
         assert!(lit.is_empty(), "{above_m}: {} pixels are lit, the first at {}", lit.len(), lit[0].1);
     }

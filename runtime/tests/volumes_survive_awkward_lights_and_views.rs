@@ -9,7 +9,7 @@ use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{
-    ASLANT, assert_right, assert_ways_agree, beside_truth, from_aside, gpu, ground, lamp_at, mask, under_lamp,
+    ASLANT, assert_right, assert_ways_agree, compare_ways, from_aside, gpu, ground, lamp_at, mask, under_lamp,
     under_sun,
 };
 use sunbake_runtime::testing::{equinox, view};
@@ -218,7 +218,7 @@ fn scenes_made_at_random_are_right() {
         let views: Vec<View> = eyes.iter().map(|[eye, target]| view(&stage, *eye, *target, [96, 96])).collect();
         let name = format!("random {seed}");
         let mut add = |stage: &Stage, moment: &Moment, light: LightKind| {
-            let (found, others) = beside_truth(&gpu, &name, stage, &views, moment, light);
+            let (found, others) = compare_ways(&gpu, &name, stage, &views, moment, light);
             all.add(&found);
             differ += others.iter().map(|(_, count)| count).sum::<usize>();
         };

@@ -1,47 +1,47 @@
-//! What keeps a surface from shading itself, in the units of the world.
+//! Bias: what keeps a surface from shading itself, in metres and texels.
 //!
-//! A texel of a map stores one depth for all of a small square across the light, and a receiver is compared with it from
-//! anywhere in that square. Four things make up for the difference, each of which may be left out:
+//! A texel of a map stores one depth for a small square across the light, and receivers anywhere in that square are compared with it.
+//! Four corrections make up for the difference; each is optional:
 //!
 //! * **Constant**: receivers are moved along the light, by metres or by a share of a texel.
 //! * **Slope**: by as much as the receiver's plane rises from a texel's middle to its rim. Right for planes at any slant, but
-//!   without end as the slant grows: light leaks through whatever is nearer than that.
+//!   unbounded as the slant grows: light leaks through casters that are nearer than that.
 //! * **Normal offset** (Holbert, "Saying goodbye to shadow acne", GDC 2011): receivers are moved along their normals, by the
 //!   distance of the texel's farthest corner from their plane: the same gap across the light, and never more than a texel.
 //! * **Receiver plane** (Isidoro, "Shadow mapping: GPU-based tips and techniques", GDC 2006): each texel is compared with the
-//!   receiver's plane at that texel, so that wide filters need no more than narrow ones. In
-//!   a concave corner that faces the light a plane goes on behind the other wall, and the filter darkens the foot of both.
+//!   receiver's plane at that texel, so that wide filters need no more bias than narrow ones. In
+//!   a concave corner that faces the light a plane continues behind the other wall, and the filter darkens both near the corner.
 //!
-//! What rounding and the raster's own grid take is added always: a 128th of a texel, a 256th of a pixel, and some steps of
+//! A small bias for rounding and for the raster's own grid is always added: a 128th of a texel, a 256th of a pixel, and some steps of
 //! `f32`.
 
 use std::collections::BTreeSet;
 use std::fmt;
 use std::str::FromStr;
 
-/// What makes up for a texel's size.
+/// Corrections for a texel's size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bias {
-    /// Along the light. 0 is none.
+    /// Metres along the light. 0 is none.
     pub constant_m: f64,
-    /// Along the light, in texels. 0 is none.
+    /// Texels along the light. 0 is none.
     pub constant_texels: f64,
-    /// How many times the rise of the receiver's plane over a filter's reach. 0 is none, 1 is right for planes.
+    /// A factor for the rise of the receiver's plane over a filter's reach. 0 is none, 1 is right for planes.
     pub slope: f64,
-    /// How many times the distance of the reach's corner from the receiver's plane. 0 is none, 1 is right for planes.
+    /// A factor for the distance of the corner of the filter's reach from the receiver's plane. 0 is none, 1 is right for planes.
     pub normal: f64,
     /// Whether texels are compared with the receiver's plane where they lie.
     pub has_plane: bool,
 }
 
 impl Bias {
-    /// Nothing but what rounding takes.
+    /// Only the bias for rounding.
     pub const NONE: Self = Self { constant_m: 0.0, constant_texels: 0.0, slope: 0.0, normal: 0.0, has_plane: false };
-    /// What needs no tuning.
+    /// Needs no tuning where the shader filters.
     pub const RECOMMENDED: Self = Self { constant_texels: 0.5, has_plane: true, ..Self::NONE };
-    /// What needs none where a sampler compares several texels with one depth.
+    /// Needs no tuning where a sampler compares several texels with one depth.
     pub const SAMPLED: Self = Self { constant_texels: 0.5, normal: 1.0, ..Self::NONE };
-    /// What shadow maps began with: one number.
+    /// The classic bias: one number.
     pub const CONSTANT: Self = Self { constant_texels: 2.0, ..Self::NONE };
 }
 

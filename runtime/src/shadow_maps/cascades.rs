@@ -3,11 +3,11 @@
 //!
 //! *Practical splits*: between equal slices and slices in equal ratio. Each map holds the bounding sphere of its slice and those
 //! before it, whose size does not change as the camera turns, and lies on a grid of its own texels, which does not move as the
-//! camera does (Valient, "Stable rendering of cascaded shadow maps", *ShaderX6*, 2008). So a shadow's edge stays where it is.
+//! camera does (Valient, "Stable rendering of cascaded shadow maps", *ShaderX6*, 2008). So shadow edges do not shimmer.
 //!
-//! Depths are how near and how far anything is, in whichever direction, in steps of a quarter of an octave, so that splits change
-//! seldom. A map of all that can be in shadow takes the place of any slice whose map would not be finer, and of all slices beyond
-//! it: seen from afar, cascades are one map.
+//! Nearest and farthest depth are those in any direction, rounded to quarters of an octave, so that splits rarely change. Where a slice's
+//! map would not be finer than one map of everything that can be in shadow, that one map replaces it and all slices beyond it. Seen from
+//! afar, cascades are one map.
 
 use super::extents::{Extents, Near, ShadowScene};
 use super::projection::{LightBounds, MapProjection};
@@ -15,9 +15,9 @@ use crate::View;
 
 /// Share of equal slices in practical splits; the rest is slices in equal ratio.
 const EQUAL: f64 = 0.12;
-/// Ratio of the farthest to the nearest depth beyond which that share falls: equal slices of a hundred kilometres help no one.
+/// Ratio of the farthest to the nearest depth above which that share falls: equal slices of a hundred kilometres are useless.
 const EQUAL_UP_TO: f64 = 16_384.0;
-/// Octaves between the nearest and the farthest depth, at most: what is nearer belongs to the first slice.
+/// Most octaves between the nearest and the farthest depth. Nearer surfaces belong to the first slice.
 const OCTAVES: f64 = 20.0;
 
 /// Depths at which slices end, in metres: `count + 1` of them.
@@ -32,7 +32,7 @@ pub fn splits(near_m: f64, far_m: f64, count: usize) -> Vec<f64> {
     (0..=count).map(at).collect()
 }
 
-/// Nearest and farthest depth of what is drawn, in whichever direction, in steps.
+/// Nearest and farthest distance of drawn triangles in any direction, rounded to quarters of an octave.
 pub fn depths_m(view: &View, scene: &ShadowScene) -> [f64; 2] {
     let [low, high] = scene.receiver_box_m.unwrap_or_default();
     let eye_m = view.eye_m.as_dvec3();
@@ -42,8 +42,8 @@ pub fn depths_m(view: &View, scene: &ShadowScene) -> [f64; 2] {
     [((near_m.log2() * 4.0).floor() / 4.0).exp2(), far_m]
 }
 
-/// The bounding sphere of all up to a depth: where its middle is along the camera's axis, and its radius. Slices that began where the
-/// last ones end would gain next to nothing, and where maps blend both have to hold the place.
+/// The bounding sphere of the view up to a depth: its middle along the camera's axis, and its radius. Starting a slice where the last one
+/// ends would gain next to nothing, and where two maps are blended both must hold the point.
 fn sphere(view: &View, to_m: f64) -> [f64; 2] {
     let corner = view.ray_first.as_dvec3();
     // Half a picture's diagonal, at a depth of one.
@@ -52,7 +52,7 @@ fn sphere(view: &View, to_m: f64) -> [f64; 2] {
     [middle_m, middle_m.max((to_m - middle_m).hypot(to_m * across))]
 }
 
-/// A view's maps, the finest first; none where nothing can be in shadow. `margin_texels` are kept around what each must hold.
+/// A view's maps, the finest first. Empty where nothing can be in shadow. `margin_texels` are kept around what each must hold.
 pub fn cascades(
     view: &View,
     extents: &Extents,
@@ -95,7 +95,7 @@ fn around(
     let snapped = (at / texel_m).round() * texel_m;
     let reach_m = radius_m + texel_m;
     let mut bounds = LightBounds { low: snapped - reach_m, high: snapped + reach_m };
-    // All heights: what lies on the map and outside of the sphere is looked up too.
+    // All heights: points on the map outside of the sphere are looked up too.
     (bounds.low.z, bounds.high.z) = (extents.receivers.low.z, extents.high_m(near));
     MapProjection::orthographic(extents.axes, &bounds, size_texels, margin_texels)
 }

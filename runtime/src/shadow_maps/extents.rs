@@ -1,4 +1,4 @@
-//! How far what casts and what receives reach, along a light's axes: what a map has to hold.
+//! How far casters and receivers reach along a light's axes: what a map has to hold.
 
 use super::ground::Ground;
 use super::projection::{LightAxes, LightBounds};
@@ -6,32 +6,32 @@ use crate::stage::Stage;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Points that stand for what is drawn.
+/// How many points are sampled on drawn triangles.
 const SAMPLES: usize = 4096;
 
-/// Room above the highest receiver, as a share of all heights: no receiver's depth may come near to 0, even where a perspective map's
-/// `w` makes little of it.
+/// Space above the highest receiver, as a share of all heights. It keeps every receiver's depth away from 0, also after the division by
+/// a perspective map's `w`.
 pub const HEADROOM: f64 = 1.0 / 256.0;
 
-/// What of a stage casts and receives, gathered once.
+/// Casters and receivers of a stage, gathered once.
 #[derive(Debug, Clone)]
 pub struct ShadowScene {
     /// Its ground.
     pub ground: Ground,
-    /// Corners of what casts.
+    /// Corners of casting triangles.
     casters_m: Vec<Vec3>,
-    /// Corners of what is drawn.
+    /// Corners of drawn triangles.
     receivers_m: Vec<Vec3>,
-    /// The box of what is drawn, bake space; none where nothing is.
+    /// The bounding box of drawn triangles, bake space. None where nothing is drawn.
     pub receiver_box_m: Option<[DVec3; 2]>,
-    /// Middles of drawn triangles, spread over all of them.
+    /// Centres of some drawn triangles, evenly picked.
     pub samples_m: Vec<DVec3>,
-    /// Boxes of drawn triangles.
+    /// Bounding boxes of drawn triangles.
     boxes_m: Vec<[Vec3; 2]>,
 }
 
 impl ShadowScene {
-    /// Gathers a stage's.
+    /// Gathers those of a stage.
     pub fn new(stage: &Stage) -> Self {
         let ground = Ground::new(stage);
         let triangles = &stage.geometry.triangles;
@@ -57,18 +57,18 @@ impl ShadowScene {
         }
     }
 
-    /// Whether anything casts.
+    /// Whether any triangle casts.
     pub fn has_casters(&self) -> bool {
         !self.casters_m.is_empty()
     }
 
-    /// How near the nearest triangle's box is to a point; 0 within one.
+    /// Distance from a point to the nearest drawn triangle's box, in metres; 0 inside one.
     pub fn nearest_m(&self, point_m: DVec3) -> f64 {
         let to_box = |[low, high]: &[Vec3; 2]| point_m.clamp(low.as_dvec3(), high.as_dvec3()).distance(point_m);
         self.boxes_m.iter().map(to_box).fold(f64::INFINITY, f64::min)
     }
 
-    /// How far it reaches along the axes of a sun.
+    /// How far casters and receivers reach along the axes of a sun.
     pub fn extents(&self, towards: DVec3) -> Extents {
         let axes = LightAxes::new(towards);
         Extents { axes, casters: along(&axes, &self.casters_m), receivers: along(&axes, &self.receivers_m) }
@@ -85,28 +85,28 @@ fn along(axes: &LightAxes, points_m: &[Vec3]) -> LightBounds {
     chunks.map(|chunk| chunk.iter().fold(LightBounds::EMPTY, with)).reduce(|| LightBounds::EMPTY, join)
 }
 
-/// How far what casts and what receives reach.
+/// How far casters and receivers reach along a light's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extents {
     /// The light's frame.
     pub axes: LightAxes,
-    /// Of what casts.
+    /// Bounds of casters.
     pub casters: LightBounds,
-    /// Of what is drawn.
+    /// Bounds of drawn triangles.
     pub receivers: LightBounds,
 }
 
 /// Where a map's depths begin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Near {
-    /// At the highest receiver: what casts from above is drawn at depth 0, by depth clamp.
+    /// At the highest receiver. Casters above it are drawn at depth 0, by depth clamp.
     Receivers,
-    /// Above all that casts.
+    /// Above all casters.
     Casters,
 }
 
 impl Extents {
-    /// What can be in shadow: what lies under some caster, seen along the light. None where nothing does.
+    /// Bounds of what can be in shadow: what lies under some caster, seen along the light. None where nothing does.
     pub fn shaded(&self, near: Near) -> Option<LightBounds> {
         if self.casters.is_empty() || self.receivers.is_empty() {
             return None;
@@ -120,7 +120,8 @@ impl Extents {
         (!bounds.is_empty() && self.casters.high.z >= bounds.low.z).then_some(bounds)
     }
 
-    /// Where depths begin, towards the sun: somewhat above, since depth 0 is kept for what casts from higher still.
+    /// The height towards the sun where depths begin. It is a little above the highest receiver (or caster), since depth 0 is for casters
+    /// above that.
     pub fn high_m(&self, near: Near) -> f64 {
         let above_m = HEADROOM * self.receivers.size().z;
         match near {
@@ -136,7 +137,7 @@ mod tests {
     use glam::Vec2;
     use sunbake::testing::{SceneBuilder, block, floor};
 
-    /// Of a roof over a wide ground, heights from the ground under a sun overhead.
+    /// The extents of a roof over a wide ground. Heights are relative to the ground.
     fn extents(roof_at_m: f32, towards: DVec3) -> Extents {
         let roof = block(Vec3::new(-1.0, roof_at_m, -1.0), Vec3::new(1.0, roof_at_m + 0.5, 1.0));
         let scene = SceneBuilder::new().soup(&floor(Vec2::splat(-50.0), Vec2::splat(50.0), 0.0)).soup(&roof).build();

@@ -1,28 +1,28 @@
 //! The ground: the lowest of the large level planes of a scene that are seen from above, and the triangles that lie in it.
 //!
-//! Two variants know of it. A ground with nothing below it also shades nothing: any ray that it stops would have to arrive
-//! from below. Such a ground is left out of every map.
+//! Two variants draw shadows on it alone. A ground with nothing below it casts no shadow, since every ray that it blocks would arrive
+//! from below. It is left out of every map then.
 
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 
 /// Cosine between a level plane's normal and the vertical.
 const LEVEL: f64 = 0.999_9;
-/// Share of the largest level plane's area from which on a lower one is the ground.
+/// Least area of the ground, as a share of the largest level plane's area.
 const AS_LARGE: f64 = 0.25;
-/// How far from a plane points may lie that are said to lie in it, as a share of the scene's size: what rounding moves them.
+/// Distance from a plane within which points count as lying in it, as a share of the scene's size: as far as rounding moves them.
 const FLAT: f64 = 1e-6;
 
 /// The ground of a stage.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ground {
-    /// Height of the plane, bake space; none where no drawn triangle is level.
+    /// Height of the plane, bake space. None where no drawn triangle is level.
     pub height_m: Option<f64>,
-    /// For each triangle, whether it lies in the plane and is drawn from above; none where there is no plane.
+    /// For each triangle, whether it lies in the plane and is drawn from above. Empty without a plane.
     holds: Vec<bool>,
-    /// Height from which on things cast on it: what lies in it, turned over as well, does not.
+    /// Height above which triangles cast on it, bake space. Triangles in the plane do not, on whichever side they are drawn.
     pub casts_from_m: f64,
-    /// Whether the ground can shade something: there is something below it.
+    /// Whether the ground can shade something, because something is below it.
     pub casts: bool,
 }
 
@@ -36,14 +36,14 @@ impl Ground {
             (up > LEVEL && sides.front) || (up < -LEVEL && sides.back)
         };
         let height_of = |i: usize| triangles[i].iter().map(|p| f64::from(p.y)).sum::<f64>() / 3.0;
-        // By heights as fine as rounding: planes that are the same to within it may part, and the larger part wins.
+        // Planes are grouped by heights rounded to that distance. One plane may fall into two groups; the larger one wins.
         let mut areas: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
         for i in (0..triangles.len()).filter(|&i| is_level(i)) {
             let [a, b, c] = triangles[i].map(|p| p.as_dvec3());
             let area = areas.entry((height_of(i) / (4.0 * flat_m)).round() as i64).or_default();
             *area = (area.0 + (b - a).cross(c - a).length(), height_of(i));
         }
-        // Of those that are about as large as the largest the lowest: a roof is no ground.
+        // The lowest of the large planes: a roof may be larger than the ground.
         let largest = areas.values().map(|(area, _)| *area).fold(0.0, f64::max);
         let Some(&(_, height_m)) = areas.values().find(|(area, _)| *area >= AS_LARGE * largest) else {
             return Self::default();
@@ -61,7 +61,7 @@ impl Ground {
         self.holds.get(triangle).is_some_and(|&holds| holds)
     }
 
-    /// Whether a triangle may shade something, if it is solid.
+    /// Whether a solid triangle may cast: all do, except a ground with nothing below it.
     pub fn lets_cast(&self, triangle: usize) -> bool {
         self.casts || !self.holds(triangle)
     }

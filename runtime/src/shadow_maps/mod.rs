@@ -1,18 +1,18 @@
-//! Shadow maps: depths as the sun sees them, with which what the camera sees is compared (Williams, "Casting curved shadows on
-//! curved surfaces", SIGGRAPH 1978), and what has been made of them since.
+//! Shadow maps: depths as seen from the sun, with which the surfaces that the camera sees are compared (Williams, "Casting curved shadows
+//! on curved surfaces", SIGGRAPH 1978), and later variants.
 //!
-//! Everything here is geometry on the CPU, in `f64`; the passes are in [`crate::gpu`]. It reads in this order:
+//! This module is geometry on the CPU, in `f64`; the passes are in [`crate::gpu`]. Read it in this order:
 //!
 //! ```text
 //! ground       the lowest large level plane               } once per
-//! extents      what casts and what receives               } stage
+//! extents      casters and receivers                      } stage
 //! projection   a map's matrix
-//! cascades, polyhedron, perspective     maps of a view    } once per view
+//! cascades, perspective (warp, polyhedron)  maps of a view   once per view
 //! bias         what keeps a surface from shading itself
 //! ```
 //!
-//! A map holds what lies under some caster, seen along the light, and nothing else: a small house in a large desert gets all
-//! texels. Both sides of every solid triangle cast, as they do for rays. What falls on no map is lit.
+//! A map holds only what lies under some caster, seen along the light: a small house in a large desert gets all texels. Both sides of
+//! every solid triangle cast, as they do for rays. Points outside of every map are lit.
 
 pub mod bias;
 pub mod cascades;
@@ -21,6 +21,7 @@ pub mod ground;
 pub mod perspective;
 pub mod polyhedron;
 pub mod projection;
+mod warp;
 
 pub use bias::Bias;
 pub use extents::{Extents, Near, ShadowScene};
@@ -50,11 +51,11 @@ pub enum Variant {
     /// A map for each slice of the view, each filtered by sixteen comparisons: what needs no tuning, however large the scene.
     #[default]
     Cascades,
-    /// A map of the scene as the camera bends it (*GPU Gems* chapter 14).
+    /// A map in the space after the camera's projection (*GPU Gems* chapter 14).
     Perspective,
     /// The same, as faces of a cube around the sun.
     Cube,
-    /// On the ground a blurred picture of what casts, without depth (*GPU Gems* chapter 11); elsewhere as [`Self::Compare`].
+    /// On the ground a blurred picture of casters, without depth (*GPU Gems* chapter 11); elsewhere as [`Self::Compare`].
     Ground,
     /// Casters laid flat on the ground (Blinn, "Me and my (fake) shadow", 1988); no shadows elsewhere.
     Planar,
@@ -75,7 +76,7 @@ impl Variant {
         Self::Planar,
     ];
 
-    /// Whether its edges are meant to be soft, so that it is to be held against soft truth.
+    /// Whether its edges are meant to be soft. It is compared with soft truth then.
     pub fn is_soft(self) -> bool {
         matches!(self, Self::Pcf16 | Self::Pcf4 | Self::Pcss | Self::Cascades | Self::Ground)
     }
@@ -85,8 +86,7 @@ impl Variant {
         matches!(self, Self::Cascades | Self::Perspective | Self::Cube)
     }
 
-    /// How far its filter reaches from the place that is looked up along either axis, in texels; the penumbra's own width comes on
-    /// top.
+    /// How far its filter reaches from the point that is looked up, along either axis, in texels. The penumbra's own width is added.
     pub fn reach_texels(self) -> f64 {
         match self {
             Self::Plain | Self::Planar => 0.5,
@@ -123,35 +123,35 @@ impl fmt::Display for Variant {
     }
 }
 
-/// How a stage is to be lit.
+/// How shadow maps are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapSettings {
-    /// What kind of map.
+    /// The kind of map.
     pub variant: Variant,
     /// Edge of each map, 16 to 16384. Bytes, and the time that a map takes to draw, grow with the square.
     pub size_texels: u32,
-    /// Most cascades, 2 to 4 (others are taken for the nearest of these): each costs a map.
+    /// Most cascades, 2 to 4; other values are clamped. Each costs a map.
     pub cascades: usize,
     /// What keeps a surface from shading itself.
     pub bias: Bias,
-    /// How a lamp's stored times are filtered, which are drawn beside the sun.
+    /// How a lamp's stored times are filtered. A lamp's shadows come from the bake.
     pub lamp_filter: Filter,
     /// Whether passes are timed, where the GPU can.
     pub is_timed: bool,
-    /// What may be left out, or done by the GPU's own means. All on, unless something is to be measured or tested.
+    /// Features that may be turned off. All are on, except for measurements and tests.
     pub means: Means,
 }
 
-/// What may be left out, or done by the GPU's own means.
+/// Features of drawing shadow maps that can be turned off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Means {
-    /// Casters above the map are drawn at depth 0 by the GPU; else depths begin above them.
+    /// Casters above the map are drawn at depth 0 by the GPU's depth clamp. Off: depths begin above them.
     pub depth_clamp: bool,
-    /// Comparisons of a sampler are filtered where it can.
+    /// A sampler's comparisons are filtered, where the GPU can.
     pub filtering: bool,
     /// Maps are kept while neither the sun nor what they depend on moves.
     pub cache: bool,
-    /// No comparison is made: all that faces the sun is lit. Tells what a filter takes.
+    /// Depths are compared. Off: every surface that faces the sun is lit, to measure what comparing costs.
     pub sampling: bool,
 }
 
@@ -175,28 +175,27 @@ impl MapSettings {
         }
     }
 
-    /// Whether the shader filters what it gathers, each texel against the receiver's plane; else what compares is a sampler (or, of
-    /// [`Variant::Plain`], the shader).
+    /// Whether the shader gathers depths and filters them itself, each texel against the receiver's plane. Otherwise a sampler compares
+    /// (or, for [`Variant::Plain`], the shader).
     pub fn gathers(&self) -> bool {
         self.bias.has_plane && self.means.filtering && !matches!(self.variant, Variant::Plain | Variant::Planar)
     }
 
-    /// How far from the place that is looked up what is found may lie, in texels: the filter's reach, what moves the receiver, and
-    /// the rounding of what casts to texels.
+    /// How far a shadow's edge may be displaced, in texels: the filter's reach, the receiver's offset, and rounding of casters to texels.
     pub fn reach_texels(&self) -> f64 {
         let to_corner = std::f64::consts::SQRT_2;
         to_corner * (self.variant.reach_texels() + self.bias.normal + 0.5) + self.bias.constant_texels
     }
 
-    /// Texels kept around what a map must hold: what a filter, the normal offset and rounding reach over its border.
+    /// Texels kept around what a map must hold, for filter, normal offset and rounding.
     pub fn margin_texels(&self) -> f64 {
         let most = f64::from(self.size_texels) / 4.0;
-        // The same for all that compare once, so that they have one map.
+        // The same for all variants that compare once, so that they can share a map.
         let reach = self.reach_texels().max(Self { variant: Variant::Compare, ..*self }.reach_texels());
         (reach + 1.0).ceil().min(most)
     }
 
-    /// The maps of a view under a sun; none where nothing can be in shadow.
+    /// The maps of a view under a sun. Empty where nothing can be in shadow.
     pub fn maps(
         &self,
         scene: &ShadowScene,
@@ -215,9 +214,16 @@ impl MapSettings {
             }
             Variant::Perspective | Variant::Cube => {
                 let samples_m = &scene.samples_m;
-                let seen =
-                    perspective::Seen { view, extents, receiver_box_m, samples_m, size_texels, margin_texels, near };
-                perspective::perspective(&seen, self.variant == Variant::Cube)
+                let request = perspective::MapRequest {
+                    view,
+                    extents,
+                    receiver_box_m,
+                    samples_m,
+                    size_texels,
+                    margin_texels,
+                    near,
+                };
+                perspective::perspective(&request, self.variant == Variant::Cube)
             }
             _ => {
                 let mut bounds = extents.shaded(near);
@@ -234,11 +240,11 @@ impl MapSettings {
     }
 }
 
-/// How far across the light edges may be off at a point, in metres: as far as [`MapSettings::reach_texels`] on the maps that the
-/// point is looked up on. Nothing where it is on none.
+/// How far across the light a shadow's edge may be displaced at a point, in metres: [`MapSettings::reach_texels`] on the maps that are
+/// looked up there. 0 where the point is on no map.
 pub fn reach_m(settings: &MapSettings, maps: &[MapProjection], point_m: DVec3) -> f64 {
     let holding = maps.iter().filter(|map| map.holds(point_m, 0.0));
-    // Near its border a cascade gives way to the next.
+    // Near its border a cascade is blended with the next.
     let looked_up = if settings.variant == Variant::Cascades { 2 } else { 1 };
     let texel_m = holding.take(looked_up).map(|map| map.texel_m(point_m)).fold(0.0, f64::max);
     settings.reach_texels() * texel_m

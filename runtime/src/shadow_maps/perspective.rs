@@ -1,93 +1,89 @@
 //! Perspective shadow maps (Stamminger and Drettakis, SIGGRAPH 2002; Kozlov, "Perspective shadow maps: care and feeding", *GPU
-//! Gems* chapter 14): the map is taken of the scene as the camera's own projection bends it, so that what is near to the eye gets
-//! more of it.
+//! Gems* chapter 14): the map is drawn in the space after the camera's projection, so that surfaces near the eye get more texels.
 //!
-//! In that space the sun is a point (or, where it stands across the view, a direction), which may lie before the camera or
-//! behind it, where rays run backwards through infinity. The chapter draws each case with a matrix of its own, one of them with
-//! an inverted depth range that sees past infinity, so that casters behind the eye are on the map and the virtual camera need
-//! not slide back. Here all cases are one formula. Let `q` be a point after the camera's projection and `l` the sun's
+//! In that space the sun is a point or, where it stands across the view, a direction. The point may lie in front of the camera or
+//! behind it; then rays run backwards through infinity. The chapter has a matrix for each case, one of them with an inverted depth range
+//! that sees past infinity, so that casters behind the eye are on the map and the virtual camera need not move back. Here one formula
+//! covers all cases. Let `q` be a point after the camera's projection and `l` the sun's
 //! direction after it, both homogeneous; then
 //!
 //! ```text
 //! v(q) = l.w q.xyz - q.w l.xyz
 //! ```
 //!
-//! points away from the sun, is linear in the point, never jumps as `l.w` passes through zero, and does not change along the
-//! light. A map that looks along an axis has `w = axis . v`, which stays positive for whatever shades a receiver, however far
-//! behind the eye. What the inverse matrix is for has dropped out.
+//! points away from the sun, is linear in the point, is continuous as `l.w` passes through zero, and is constant along the light. A map
+//! that looks along an axis has `w = axis . v`, which stays positive for any caster that shades a receiver, however far behind the eye.
+//! So the inverted matrix is not needed.
 //!
 //! * The map is fitted to the part of the scene's box that is in view (the chapter's unit cube clipping).
-//! * How strongly space is bent depends on how far the virtual camera stands behind the eye (Wimmer and others, "Light space
-//!   perspective shadow maps", EGSR 2004). That, and where the map looks, are chosen among a few, by the size of the texels that
-//!   pixels fall into; and if none of them gains anything, the map is straight.
-//! * Bias is in metres and texels, as everywhere: depth is metres along the light, over `w` ([`super::projection`]).
-//! * Where the sun stands in view, one map would have to open to half of all directions. The *cube* form has up to six, at
-//!   right angles, around the sun; each is fitted to what it sees, with a margin over its neighbours.
+//! * The strength of the warp depends on how far the virtual camera stands behind the eye (Wimmer and others, "Light space perspective
+//!   shadow maps", EGSR 2004). A few distances and axes are tried ([`super::warp`]); the one with the smallest texels in pixels wins, and
+//!   if none is better than an orthographic map, that is used.
+//! * Bias is in metres and texels, as for all variants: depth is metres along the light, over `w` ([`super::projection`]).
+//! * Where the sun stands in view, one map would have to cover half of all directions. The *cube* form has up to six maps around the sun,
+//!   at right angles; each is fitted to the part that it sees, with a margin over its neighbours.
 
 use super::extents::{Extents, Near};
 use super::polyhedron::Polyhedron;
 use super::projection::MapProjection;
-use crate::View;
-use glam::{DMat3, DVec2, DVec3, DVec4};
+use super::warp::Warp;
+use crate::camera::View;
+use glam::{DVec3, DVec4};
 
-/// How far behind the eye the virtual camera is tried, as shares of the farthest depth.
+/// Distances of the virtual camera behind the eye that are tried, as shares of the greatest depth.
 const BACK_SHARES: [f64; 8] = [0.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 0.25, 0.5, 1.0];
-/// How far between the middle of what is seen and straight away from the plane at infinity axes are tried.
-const TURNS: [f64; 3] = [0.0, 0.4, 0.7];
-/// Least share of the greatest `w` that a corner of what is fitted may have.
-const LEAST_W: f64 = 1e-3;
-/// How nearly the sun may stand across the view before a cube is one map.
-const ACROSS: f64 = 1e-5;
-/// Share of a pixel below which finer texels gain nothing.
+/// Texel size in pixels below which smaller texels gain nothing.
 const FINE_PX: f64 = 0.5;
 
-/// What maps of a view must hold.
-pub struct Seen<'a> {
+/// What the maps of a view must hold, and how large they are.
+pub struct MapRequest<'a> {
     /// The view.
     pub view: &'a View,
-    /// What casts and receives.
+    /// How far casters and receivers reach.
     pub extents: &'a Extents,
-    /// The box of what is drawn.
+    /// The bounding box of drawn triangles.
     pub receiver_box_m: [DVec3; 2],
-    /// Points that stand for what is drawn.
+    /// Points sampled on drawn triangles.
     pub samples_m: &'a [DVec3],
     /// Edge of a map.
     pub size_texels: u32,
-    /// What is kept around what each map must hold.
+    /// Texels kept around what each map must hold.
     pub margin_texels: f64,
-    /// Where depths begin.
+    /// Where the maps' depths begin.
     pub near: Near,
 }
 
-/// Maps of a view, as few as hold what is in view: one, or with `is_cube` up to six. None where nothing is in view or in shadow.
-pub fn perspective(seen: &Seen<'_>, is_cube: bool) -> Vec<MapProjection> {
-    let Some(shaded) = seen.extents.shaded(seen.near) else { return Vec::new() };
-    let region = seen.region();
+/// The maps of a view: one, or with `is_cube` up to six. Empty where nothing is in view or nothing can be in shadow.
+pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection> {
+    let Some(shaded) = request.extents.shaded(request.near) else { return Vec::new() };
+    let region = request.region();
     if region.is_empty() {
         return Vec::new();
     }
-    let mut samples = seen.samples();
+    let mut samples = request.samples();
     if samples.is_empty() {
         samples.extend(region.corners());
     }
     let mut best: Option<(f64, Vec<MapProjection>)> = None;
-    for warp in seen.warps(&region) {
-        let maps = if is_cube { warp.cube(seen, &region) } else { warp.single(seen, &region).into_iter().collect() };
-        let score = seen.score(&maps, &samples);
+    for warp in request.warps(&region) {
+        let maps =
+            if is_cube { warp.cube(request, &region) } else { warp.single(request, &region).into_iter().collect() };
+        let score = request.score(&maps, &samples);
         if !maps.is_empty() && best.as_ref().is_none_or(|(least, _)| score < *least) {
             best = Some((score, maps));
         }
     }
-    let straight = MapProjection::orthographic(seen.extents.axes, &shaded, seen.size_texels, seen.margin_texels);
-    // A view that bends nothing to its gain is better served by a straight map.
+    let orthographic =
+        MapProjection::orthographic(request.extents.axes, &shaded, request.size_texels, request.margin_texels);
+    // Without a gain the orthographic map is used.
     match best {
-        Some((score, maps)) if score <= seen.score(std::slice::from_ref(&straight), &samples) => maps,
-        _ => vec![straight],
+        Some((score, maps)) if score <= request.score(std::slice::from_ref(&orthographic), &samples) => maps,
+        _ => vec![orthographic],
     }
 }
 
-impl Seen<'_> {
-    /// What is in view of the box.
+impl MapRequest<'_> {
+    /// The part of the receivers' box that is in view.
     fn region(&self) -> Polyhedron {
         let rows = self.view.clip_from_eye().as_dmat4().transpose();
         let eye_m = self.view.eye_m.as_dvec3();
@@ -98,7 +94,7 @@ impl Seen<'_> {
         planes.iter().fold(Polyhedron::of_box(self.receiver_box_m), |body, plane| body.cut(about_eye(*plane)))
     }
 
-    /// Points in view that stand for what is seen.
+    /// The sampled points that are in view.
     fn samples(&self) -> Vec<DVec3> {
         let eye_m = self.view.eye_m.as_dvec3();
         let [width, height] = self.view.size.map(f64::from);
@@ -113,21 +109,21 @@ impl Seen<'_> {
         self.samples_m.iter().filter(is_in_view).copied().collect()
     }
 
-    /// Mean of the logarithms of texels' edges in pixels, over points in view; less is better.
+    /// The mean logarithm of the texels' size in pixels, over points in view. Less is better.
     fn score(&self, maps: &[MapProjection], samples_m: &[DVec3]) -> f64 {
         let eye_m = self.view.eye_m.as_dvec3();
         let of_sample = |p: &DVec3| {
             let pixel_m = p.distance(eye_m) * f64::from(self.view.pixel_angle_rad);
             match maps.iter().find(|map| map.holds(*p, 0.0)) {
                 Some(map) => (map.texel_m(*p) / pixel_m).max(FINE_PX).ln(),
-                // Never in shadow: it needs no texel.
+                // Never in shadow, so it needs no texel.
                 None => FINE_PX.ln(),
             }
         };
         samples_m.iter().map(of_sample).sum::<f64>() / samples_m.len().max(1) as f64
     }
 
-    /// Virtual cameras that are tried.
+    /// All warps that are tried.
     fn warps(&self, region: &Polyhedron) -> Vec<Warp> {
         let (eye_m, forward) = (self.view.eye_m.as_dvec3(), self.view.forward.as_dvec3());
         let depths = region.corners().map(|p| (p - eye_m).dot(forward));
@@ -139,129 +135,10 @@ impl Seen<'_> {
     }
 }
 
-/// The scene as a virtual camera bends it, with an axis along which a map of it looks.
-struct Warp {
-    eye_m: DVec3,
-    towards: DVec3,
-    /// Rows of the virtual camera's projection, about the eye: x, y, z and w.
-    q: [DVec4; 4],
-    /// The sun after it.
-    l: DVec4,
-    /// Unit vectors after it: the last points from the sun to the middle of what is seen.
-    frame: DMat3,
-    /// A point after it through which the axis passes.
-    middle: DVec3,
-}
-
-impl Warp {
-    /// The warps of a virtual camera that stands behind the eye, for each axis that is tried.
-    fn around(view: &View, towards: DVec3, region: &Polyhedron, range_m: [f64; 2], back_m: f64) -> Vec<Self> {
-        let rows = view.clip_from_eye().as_dmat4().transpose();
-        let forward = view.forward.as_dvec3();
-        let [near_m, far_m] = range_m.map(|depth_m| depth_m + back_m);
-        let k = far_m / (far_m - near_m);
-        let depth = forward.extend(back_m);
-        let q = [rows.x_axis, rows.y_axis, depth * k - DVec4::W * (near_m * k), depth];
-        let l = DVec4::from_array(q.map(|row| row.truncate().dot(towards)));
-        let eye_m = view.eye_m.as_dvec3();
-        let places = region.corners().map(|p| {
-            let q = q.map(|row| row.dot((p - eye_m).extend(1.0)));
-            let place = DVec3::new(q[0], q[1], q[2]) / q[3].max(1e-12 * far_m);
-            place.clamp(DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE)
-        });
-        let (low, high) =
-            places.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let middle = 0.5 * (low + high);
-        let axis = |turn: f64| {
-            // A sun that stands across the view is seen along one axis alone.
-            let straight = if l.w.abs() > ACROSS { DVec3::new(l.x / l.w, l.y / l.w, middle.z) } else { middle };
-            Self::with_axis(eye_m, towards, q, l, middle.lerp(straight, turn))
-        };
-        TURNS.into_iter().filter_map(axis).collect()
-    }
-
-    fn with_axis(eye_m: DVec3, towards: DVec3, q: [DVec4; 4], l: DVec4, middle: DVec3) -> Option<Self> {
-        let axis = (middle * l.w - l.truncate()).try_normalize()?;
-        let (across, up) = axis.any_orthonormal_pair();
-        Some(Self { eye_m, towards, q, l, frame: DMat3::from_cols(across, up, axis), middle })
-    }
-
-    /// The row that tells how far a point lies along a vector, from the axis, after the camera's projection.
-    fn beside(&self, vector: DVec3) -> DVec4 {
-        let [x, y, z, w] = self.q;
-        x * vector.x + y * vector.y + z * vector.z - w * vector.dot(self.middle)
-    }
-
-    /// The row of `vector . v`.
-    fn away(&self, vector: DVec3) -> DVec4 {
-        let [x, y, z, w] = self.q;
-        (x * vector.x + y * vector.y + z * vector.z) * self.l.w - w * vector.dot(self.l.truncate())
-    }
-
-    /// One map of the region; none where one cannot see all of it.
-    fn single(&self, seen: &Seen<'_>, region: &Polyhedron) -> Option<MapProjection> {
-        let rows = [self.beside(self.frame.x_axis), self.beside(self.frame.y_axis), self.away(self.frame.z_axis)];
-        self.fit(seen, region, rows)
-    }
-
-    /// The faces of a cube around the sun that see anything of the region.
-    fn cube(&self, seen: &Seen<'_>, region: &Polyhedron) -> Vec<MapProjection> {
-        if self.l.w.abs() < ACROSS {
-            return self.single(seen, region).into_iter().collect();
-        }
-        let [a, b, c] = [self.frame.x_axis, self.frame.y_axis, self.frame.z_axis];
-        let faces = [[a, b, c], [b, c, a], [c, a, b], [b, c, -a], [c, a, -b], [a, b, -c]];
-        let mut maps = Vec::new();
-        for [across, up, axis] in faces {
-            let rows @ [x, y, w] = [self.away(across), self.away(up), self.away(axis)];
-            let sides = [w + x, w - x, w + y, w - y].map(|side| self.about_eye(side));
-            let part = sides.iter().fold(region.clone(), |body, plane| body.cut(*plane));
-            if part.is_empty() {
-                continue;
-            }
-            match self.fit(seen, &part, rows) {
-                Some(map) => maps.push(map),
-                None => return Vec::new(),
-            }
-        }
-        maps
-    }
-
-    /// A row about the eye as one about the centre.
-    fn about_eye(&self, row: DVec4) -> DVec4 {
-        row.truncate().extend(row.w - row.truncate().dot(self.eye_m))
-    }
-
-    /// Scales rows of x, y and w so that a region fills the map, and adds depth.
-    fn fit(&self, seen: &Seen<'_>, region: &Polyhedron, [x, y, w]: [DVec4; 3]) -> Option<MapProjection> {
-        let corners: Vec<DVec4> = region.corners().map(|p| (p - self.eye_m).extend(1.0)).collect();
-        let most_w = corners.iter().map(|p| w.dot(*p)).fold(0.0, f64::max);
-        let (x, y, w) = (x / most_w, y / most_w, w / most_w);
-        if most_w <= 0.0 || corners.iter().any(|p| w.dot(*p) < LEAST_W) {
-            return None;
-        }
-        let place = |p: &DVec4| DVec2::new(x.dot(*p), y.dot(*p)) / w.dot(*p);
-        let places = corners.iter().map(place);
-        let (low, high) =
-            places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let inner = f64::from(seen.size_texels) / (f64::from(seen.size_texels) - 2.0 * seen.margin_texels).max(1.0);
-        let half = 0.5 * (high - low).max(DVec2::splat(1e-9)) * inner;
-        let middle = 0.5 * (low + high);
-        // Heights towards the sun are told from the eye. The top is that of all that is drawn: a plane may rise out of view.
-        let top_m = seen.extents.high_m(seen.near) - self.towards.dot(self.eye_m);
-        let depth = (-self.towards).extend(top_m);
-        let deepest = corners.iter().map(|p| depth.dot(*p) / w.dot(*p)).fold(0.0, f64::max);
-        let z = depth / (deepest * (1.0 + 1e-6)).max(1e-30);
-        let rows = [(x - w * middle.x) / half.x, (y - w * middle.y) / half.y, z, w];
-        // A mirrored frame would turn triangles over, but both sides cast.
-        Some(MapProjection::new(seen.extents.axes, self.eye_m, rows, seen.size_texels))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Camera;
+    use crate::camera::Camera;
     use crate::shadow_maps::ShadowScene;
     use crate::stage::Stage;
     use glam::{Vec2, Vec3};
@@ -289,11 +166,11 @@ mod tests {
         let camera = Camera::look_at(EYE, DVec3::new(40.0, -3.0, -5.0), 0.9).unwrap();
         let view = View::new(&camera, [96, 64], &case.stage.scene);
         let extents = case.scene.extents(towards);
-        (view, perspective(&seen(case, &view, &extents), is_cube))
+        (view, perspective(&request(case, &view, &extents), is_cube))
     }
 
-    fn seen<'a>(case: &'a Case, view: &'a View, extents: &'a Extents) -> Seen<'a> {
-        Seen {
+    fn request<'a>(case: &'a Case, view: &'a View, extents: &'a Extents) -> MapRequest<'a> {
+        MapRequest {
             view,
             extents,
             receiver_box_m: case.scene.receiver_box_m.unwrap(),
@@ -359,10 +236,10 @@ mod tests {
         let texel_m = |turn: f64| {
             let towards = (across + forward * turn).normalize();
             let extents = case.scene.extents(towards);
-            let seen = seen(&case, &view, &extents);
-            let region = seen.region();
+            let request = request(&case, &view, &extents);
+            let region = request.region();
             let warp = Warp::around(&view, towards, &region, [2.0, 100.0], 10.0).swap_remove(0);
-            warp.single(&seen, &region).unwrap().texel_m(point)
+            warp.single(&request, &region).unwrap().texel_m(point)
         };
         for turn in [1e-4, 1e-6, 1e-9, 1e-12] {
             let [before, after, at] = [texel_m(turn), texel_m(-turn), texel_m(0.0)];
@@ -391,7 +268,7 @@ mod tests {
         let camera = Camera::look_at(DVec3::new(0.0, 50.0, 0.0), DVec3::new(0.0, 90.0, 1.0), 0.5).unwrap();
         let view = View::new(&camera, [64, 64], &case.stage.scene);
         let extents = case.scene.extents(DVec3::Y);
-        let seen = seen(&case, &view, &extents);
-        assert!(perspective(&seen, false).is_empty() && perspective(&seen, true).is_empty());
+        let request = request(&case, &view, &extents);
+        assert!(perspective(&request, false).is_empty() && perspective(&request, true).is_empty());
     }
 }

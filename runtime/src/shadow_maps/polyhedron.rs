@@ -10,7 +10,7 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
-    /// A box.
+    /// The box with these least and greatest coordinates.
     pub fn of_box([low, high]: [DVec3; 2]) -> Self {
         let corner = |i: usize| {
             let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
@@ -20,7 +20,7 @@ impl Polyhedron {
         Self { faces: faces.map(|face| face.map(corner).to_vec()).into() }
     }
 
-    /// What of it lies where `plane . (point, 1) >= 0`.
+    /// The part where `plane . (point, 1) >= 0`.
     pub fn cut(&self, plane: DVec4) -> Self {
         let height = |p: DVec3| plane.truncate().dot(p) + plane.w;
         let mut cap: Vec<DVec3> = Vec::new();
@@ -49,7 +49,7 @@ impl Polyhedron {
         Self { faces }
     }
 
-    /// Its corners, some of them more than once.
+    /// The corners, some of them more than once.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         self.faces.iter().flatten().copied()
     }
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn cuts_keep_what_lies_before_their_planes() {
+    fn cuts_keep_the_positive_side_of_their_planes() {
         let corner = cube().cut(DVec4::new(-1.0, -1.0, -1.0, 1.0));
         let found: Vec<DVec3> = corner.corners().collect();
         for expected in [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z] {

@@ -1,13 +1,12 @@
-//! From the world to a map, as one homogeneous matrix in `f64`.
+//! The projection from bake space to a map, as one homogeneous matrix in `f64`.
 //!
-//! The sun's rays are parallel. A map of it sends each ray to one place of the map, so the rows for its two coordinates and
-//! for their common denominator do not change along the light: whatever the projection, it is a projective map of the plane
-//! across the light, and a depth. An orthographic map's denominator is one everywhere; a perspective one's falls towards the
-//! eye. The depth's row is free, and is chosen as metres along the light: a shift of the receiver along the light is a shift
-//! of its depth, in either kind.
+//! The sun's rays are parallel, and a map sends each ray to one point. So the rows for x, y and w are constant along the light: every
+//! projection is a projective map of the plane across the light, and a depth. An orthographic map's w is one everywhere; a perspective
+//! map's w falls towards the eye. The depth's row is free. It is metres along the light, so that moving a receiver along the light shifts
+//! its depth, in either kind of map.
 //!
-//! Matrices are about an origin of their own, which is rounded to `f32` first, so that what a vertex shader and a fragment
-//! shader subtract is the same.
+//! Each matrix is relative to an origin of its own, which is rounded to `f32` first, so that vertex and fragment shaders subtract the
+//! same vector.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use sunbake_shaders::ShadowViewUniform;
@@ -53,7 +52,7 @@ pub struct LightBounds {
 }
 
 impl LightBounds {
-    /// Of nothing.
+    /// The bounds of no points.
     pub const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     /// Whether there is nothing in it.
@@ -61,7 +60,7 @@ impl LightBounds {
         !self.low.cmple(self.high).all()
     }
 
-    /// Makes room for a point.
+    /// Grows to contain a point.
     pub fn add(&mut self, along: DVec3) {
         (self.low, self.high) = (self.low.min(along), self.high.max(along));
     }
@@ -77,7 +76,7 @@ impl LightBounds {
 pub struct MapProjection {
     /// The light's frame.
     pub axes: LightAxes,
-    /// What points are taken relative to, bake space; a vector of `f32`.
+    /// The origin that points are relative to, bake space, in metres; representable in `f32`.
     pub origin_m: DVec3,
     /// Rows from a point less the origin to clip space: x and y within -w to w are on the map, depth is z over w.
     pub clip_from_point: DMat4,
@@ -93,7 +92,7 @@ impl MapProjection {
     }
 
     /// An orthographic map of what lies within bounds, with `margin_texels` around them on every side. Depth is 0 at the top and 1
-    /// at the bottom. Bounds without size get a little.
+    /// at the bottom. Bounds without extent are grown a little.
     pub fn orthographic(axes: LightAxes, bounds: &LightBounds, size_texels: u32, margin_texels: f64) -> Self {
         let least_m = (bounds.low.abs().max(bounds.high.abs()).max_element() * 1e-6).max(1e-9);
         let size_m = bounds.size().max(DVec3::splat(least_m));
@@ -130,7 +129,7 @@ impl MapProjection {
         self.origin_m + point.truncate() / point.w
     }
 
-    /// What a step of one texel to the map's right and one to its bottom are across the light, at a point.
+    /// At a point, the steps across the light of one texel to the map's right and of one to its bottom.
     pub fn texel_steps_m(&self, point_m: DVec3) -> [DVec3; 2] {
         let clip = self.clip(point_m);
         let ndc = DVec2::new(clip.x, clip.y) / clip.w;
@@ -143,7 +142,7 @@ impl MapProjection {
         [dv.cross(towards) * texel, towards.cross(du) * texel]
     }
 
-    /// The longer edge of the texel that a point falls into.
+    /// The longer edge of the texel that a point falls into, in metres.
     pub fn texel_m(&self, point_m: DVec3) -> f64 {
         let [u, v] = self.texel_steps_m(point_m);
         u.length().max(v.length())
@@ -155,7 +154,7 @@ impl MapProjection {
         [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis]
     }
 
-    /// What shaders need to know of it, seen from an eye.
+    /// The uniform that shaders read, for an eye in bake space.
     pub fn uniform(&self, eye_m: Vec3) -> ShadowViewUniform {
         ShadowViewUniform {
             clip_from_point: self.clip_from_point.as_mat4().to_cols_array_2d(),

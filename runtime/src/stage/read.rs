@@ -1,9 +1,10 @@
-//! Making a stage: from a set on disk, or from a scene alone.
+//! Making a stage: from a set on disk, from a bake in memory, or from a scene alone.
 
 use super::{Chart, Stage};
 use glam::Vec2;
 use std::collections::HashMap;
 use std::path::Path;
+use sunbake::Bake;
 use sunbake::disk::manifest::InstanceEntry;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::{LoadError, LoadLimits, Scene};
@@ -66,6 +67,14 @@ impl Stage {
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
 
+    /// A bake that was never written: what [`sunbake::bake_scene`] gives, ready to be drawn.
+    pub fn of_bake(bake: Bake) -> Result<Self, StageError> {
+        let scene = bake.scene(&LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+        let pages = bake.pages.into_iter().map(|page| page.maps).collect();
+        let stage = Self::new(scene, &bake.manifest.instances, pages, bake.bits.times, bake.path)?;
+        Ok(stage.with_lamp(bake.lamp.as_ref()))
+    }
+
     /// A scene for which nothing was baked: it can be drawn and traced, and its maps are empty.
     pub fn plain(scene: Scene, path: Option<SunPath>) -> Self {
         let chart = Chart { page: 0, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
@@ -108,4 +117,49 @@ fn charts(scene: &Scene, entries: &[InstanceEntry], page_count: usize) -> Result
         Ok(Some(Chart { page, uv_set, scale: entry.uv_scale.into(), offset: entry.uv_offset.into() }))
     };
     scene.instances.iter().map(chart).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shot::Shot;
+    use crate::technique::{BakedCpu, Technique};
+    use crate::testing::view;
+    use glam::{DVec3, Vec3};
+    use sunbake::progress::Silent;
+    use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
+    use sunbake::sun::DayRequest;
+    use sunbake::testing::{SceneBuilder, floor};
+    use sunbake_shaders::Filter;
+
+    /// A lit picture at noon, on the CPU.
+    fn noon(stage: &Stage) -> Vec<Vec3> {
+        let shot = Shot::new(stage, view(stage, DVec3::new(3.0, 4.0, 5.0), DVec3::ZERO, [48, 32]));
+        BakedCpu::new(stage, Filter::Bilinear).color(&shot, &stage.moment(0.4)).unwrap().pixels
+    }
+
+    #[test]
+    fn a_bake_in_memory_is_drawn_as_the_set_that_is_written_of_it() {
+        let scene = SceneBuilder::new()
+            .soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0))
+            .block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.5, 0.5))
+            .build();
+        let settings = BakeSettings {
+            page_size_texels: 64,
+            lane_count: 3,
+            ambient: Some(AmbientRequest::with_rays(64)),
+            threads: 1,
+            ..BakeSettings::standard(SunRequest::Day(DayRequest::new(None, None).unwrap()))
+        };
+        let bake = sunbake::bake_scene(&scene, &settings, &Silent).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("set");
+        bake.write(&target, false).unwrap();
+        let [in_memory, on_disk] =
+            [Stage::of_bake(bake).unwrap(), Stage::read(&target).unwrap()].map(|stage| noon(&stage));
+        assert!(in_memory.iter().any(|light| *light != in_memory[0]), "the picture shows something");
+        // The manifest keeps angles in degrees, so that those of a path may differ in their last bit.
+        let worst = in_memory.iter().zip(&on_disk).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
+        assert!(worst < 1e-5, "{worst}");
+    }
 }

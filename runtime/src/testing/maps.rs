@@ -1,4 +1,4 @@
-//! Shadow maps held against truth: at times of day, through cameras spread around, two of them in shadow.
+//! Shadow maps compared with truth: at several times of day, through cameras around the scene, two of them in shadow.
 
 use super::masks::{camera_in_shadow, cameras_around, mask};
 use crate::View;
@@ -16,25 +16,25 @@ use sunbake::trace::Hit;
 /// Rays of soft truth.
 const SOFT_RAYS: u32 = 64;
 
-/// A shot, with what truth says of the sun's centre and of its disc.
-pub struct Seen<'a> {
-    /// What is seen.
+/// A shot, with hard and soft truth of the sun.
+pub struct ReferenceShot<'a> {
+    /// The shot.
     pub shot: Shot<'a>,
-    /// Of its centre.
+    /// Visibility of the sun's centre, 0 or 1.
     pub hard: Raster<f32>,
-    /// Of its disc.
+    /// Visibility of the sun's disc, 0 to 1.
     pub soft: Raster<f32>,
 }
 
-/// What is drawn: moments, each through several cameras.
-pub struct Day<'a> {
+/// Moments of a day, each seen by several cameras.
+pub struct ReferenceDay<'a> {
     /// The stage.
     pub stage: &'a Stage,
-    /// Moments, with what is seen.
-    pub all: Vec<(Moment, Vec<Seen<'a>>)>,
+    /// Moments, with the shots of each.
+    pub all: Vec<(Moment, Vec<ReferenceShot<'a>>)>,
 }
 
-impl<'a> Day<'a> {
+impl<'a> ReferenceDay<'a> {
     /// A stage at `times` through six cameras, two of them in shadow; pictures of `edge_px` squared.
     pub fn new(stage: &'a Stage, edge_px: u32, times: impl Iterator<Item = f64>) -> Self {
         let seen = |t: f64| {
@@ -43,13 +43,13 @@ impl<'a> Day<'a> {
             let inside = [1, 2].into_iter().filter_map(|pick| camera_in_shadow(stage, towards, pick));
             let view = |camera| View::new(&camera, [edge_px; 2], &stage.scene);
             let views = cameras_around(stage).into_iter().chain(inside).map(view);
-            (moment, views.map(|view| Seen::new(stage, view, &moment)).collect())
+            (moment, views.map(|view| ReferenceShot::new(stage, view, &moment)).collect())
         };
         Self { stage, all: times.map(seen).collect() }
     }
 }
 
-impl<'a> Seen<'a> {
+impl<'a> ReferenceShot<'a> {
     /// A view of a stage at a moment.
     pub fn new(stage: &'a Stage, view: View, moment: &Moment) -> Self {
         let shot = Shot::new(stage, view);
@@ -58,7 +58,7 @@ impl<'a> Seen<'a> {
         Self { shot, hard, soft }
     }
 
-    /// What shadow maps make of it.
+    /// Errors and defects of shadow maps in it.
     pub fn defects(&self, maps: &mut ShadowMaps, moment: &Moment) -> Result<Defects, GpuError> {
         let drawn = maps.visibility(&self.shot, moment)?;
         let depths_m = maps.renderer().depths_m(&self.shot.view)?;
@@ -71,8 +71,8 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// All of a day's defects. Says which pictures have acne or leaks, if asked to.
-pub fn defects_of(gpu: &Gpu, day: &Day, settings: MapSettings, says_where: bool) -> Result<Defects, GpuError> {
+/// Errors and defects of a whole day. `says_where` prints which pictures have acne or leaks.
+pub fn defects_of(gpu: &Gpu, day: &ReferenceDay, settings: MapSettings, says_where: bool) -> Result<Defects, GpuError> {
     let mut maps = ShadowMaps::new(gpu, day.stage, settings)?;
     let mut all = Defects::default();
     for (moment, seen) in &day.all {
@@ -94,9 +94,9 @@ pub fn defects_of(gpu: &Gpu, day: &Day, settings: MapSettings, says_where: bool)
     Ok(all)
 }
 
-/// The places that a shot's pixels show, world space, of those that show any.
-pub fn places(shot: &Shot) -> Vec<(usize, DVec3)> {
+/// The points that a shot's pixels show, in world space. Pixels without a surface are left out.
+pub fn surface_points(shot: &Shot) -> Vec<(usize, DVec3)> {
     let geometry = &shot.stage.geometry;
-    let place = |hit: &Hit| geometry.point(hit.triangle as usize, hit.barycentric) + shot.stage.scene.centre_m;
-    shot.hits().iter().enumerate().filter_map(|(i, hit)| Some((i, place(hit.as_ref()?)))).collect()
+    let point = |hit: &Hit| geometry.point(hit.triangle as usize, hit.barycentric) + shot.stage.scene.centre_m;
+    shot.hits().iter().enumerate().filter_map(|(i, hit)| Some((i, point(hit.as_ref()?)))).collect()
 }

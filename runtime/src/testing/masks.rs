@@ -1,4 +1,4 @@
-//! Hard masks held against hard truth, and every way of drawing them against the others.
+//! Hard masks compared with hard truth, and with the masks of every other way of drawing shadow volumes.
 
 use super::{standing_sun, view};
 use crate::camera::{Camera, View};
@@ -21,15 +21,15 @@ pub fn gpu() -> Gpu {
     Gpu::open().expect("these tests need a GPU adapter: install mesa-vulkan-drivers")
 }
 
-/// A sun that is along no axis and no diagonal.
+/// A direction to the sun that is along no axis and no diagonal.
 pub const ASLANT: DVec3 = DVec3::new(0.53, 0.62, 0.31);
 
-/// Level ground of twelve metres, to put things on.
+/// Level ground, twelve metres wide.
 pub fn ground() -> SceneBuilder {
     SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0))
 }
 
-/// The ground and what stands on it, from above and aside, 128 pixels square.
+/// A view of the ground from above and aside, 128 by 128 pixels.
 pub fn from_aside(stage: &Stage) -> View {
     view(stage, DVec3::new(4.1, 3.7, 5.3), DVec3::new(0.1, 0.4, -0.2), [128, 128])
 }
@@ -50,7 +50,7 @@ pub fn lamp_at(place: DVec3) -> LampPath {
     LampPath::new(vec![key(0.0, 0.0), key(1.0, 1.0)], 0.0, 10.0).expect("the lamp moves")
 }
 
-/// Every way of drawing volumes: each mode with all savings, and what savings there are without any.
+/// Every way of drawing volumes: each mode with all savings, and three modes without any.
 pub fn all_ways() -> Vec<VolumeSettings> {
     let way = |mode, savings| VolumeSettings { mode, savings, ..VolumeSettings::default() };
     let saved = Mode::ALL.map(|mode| way(mode, Savings::default()));
@@ -67,7 +67,7 @@ pub fn mask(technique: &mut dyn Technique, shot: &Shot, moment: &Moment, light: 
     mask.unwrap_or_else(|error| panic!("{}: {error}", technique.name()))
 }
 
-/// What one way of drawing volumes makes of a shot, beside truth.
+/// How far one way of drawing volumes agrees with truth in a shot.
 pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: LightKind) -> MaskAgreement {
     let truth = mask(&mut Truth::Hard, shot, moment, light);
     let found = mask(volumes, shot, moment, light);
@@ -75,8 +75,8 @@ pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: Lig
     MaskAgreement::new(shot, moment, light, &found, &truth, &depths_m)
 }
 
-/// Asserts that every way of drawing a moment's volumes gives one mask, bit for bit, and that it is right: without excuse
-/// outside of truth's edges, seldom with one, and mostly in the band.
+/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit, and that it is right: no unexplained error
+/// outside of truth's edges, few explained ones, and few errors in the band.
 pub fn assert_right(
     gpu: &Gpu,
     name: &str,
@@ -86,15 +86,15 @@ pub fn assert_right(
     light: LightKind,
 ) -> MaskAgreement {
     let all = assert_ways_agree(gpu, name, stage, views, moment, light);
-    let excused = all.at_fine_edges + all.of_other_surfaces;
+    let explained = all.at_fine_edges + all.of_other_surfaces;
     assert!(all.unexplained.is_empty(), "{name}: wrong at {:?}", all.unexplained);
-    assert!(excused <= all.pixels / 3000, "{name}: {}", all.sentence());
-    // Stacks of sheets have the most: one and a half in a hundred.
+    assert!(explained <= all.pixels / 3000, "{name}: {}", all.sentence());
+    // Stacks of sheets have most: one and a half in a hundred.
     assert!(all.wrong_in_band <= 4 + all.in_band / 40, "{name}: {}", all.sentence());
     all
 }
 
-/// Asserts that every way of drawing a moment's volumes gives one mask, bit for bit. What that is like beside truth.
+/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit. Gives how far it agrees with truth.
 pub fn assert_ways_agree(
     gpu: &Gpu,
     name: &str,
@@ -103,14 +103,14 @@ pub fn assert_ways_agree(
     moment: &Moment,
     light: LightKind,
 ) -> MaskAgreement {
-    let (all, differ) = beside_truth(gpu, name, stage, views, moment, light);
+    let (all, differ) = compare_ways(gpu, name, stage, views, moment, light);
     assert!(differ.is_empty(), "{name} differs from what is planned: {differ:?}");
     all
 }
 
-/// What the planned way of drawing a moment's volumes is like beside truth, and which other ways differ from it, in how many
+/// How far the planned way of drawing a moment's volumes agrees with truth, and which other ways differ from it, in how many
 /// pixels.
-pub fn beside_truth(
+pub fn compare_ways(
     gpu: &Gpu,
     name: &str,
     stage: &Stage,
@@ -138,7 +138,7 @@ pub fn beside_truth(
     (all, differ)
 }
 
-/// The scene with its leaves solid: shadow volumes do not see the holes in cards, and this is what they draw.
+/// The scene without alpha masks, as shadow volumes draw it.
 pub fn with_solid_leaves(mut scene: Scene) -> Scene {
     for material in &mut scene.materials {
         if matches!(material.alpha, Alpha::Mask { .. }) {

@@ -1,4 +1,5 @@
-//! Sets baked by code from scenes made by code, for tests of this crate and of those above it. Not part of the tool.
+//! Sets that are baked in code from scenes made in code, for tests of this crate and of those that depend on it. Not part of the
+//! commands.
 
 pub mod maps;
 pub mod masks;
@@ -172,7 +173,7 @@ fn layers_by(
     encoder.finish()
 }
 
-/// A moment of a stage drawn on the GPU and by its twin: how far they agree, to 1/255, on visibility and on the picture.
+/// Draws a moment on the GPU and by its twin on the CPU. Gives how far they agree, to 1/255, on visibility and on the picture.
 pub fn twins(
     on_gpu: &mut BakedGpu,
     on_cpu: &mut BakedCpu,

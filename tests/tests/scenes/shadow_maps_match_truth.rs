@@ -12,7 +12,7 @@ use sunbake::scene::{LoadLimits, load};
 use sunbake_runtime::Stage;
 use sunbake_runtime::compare::Defects;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
-use sunbake_runtime::testing::maps::{Day, defects_of};
+use sunbake_runtime::testing::maps::{ReferenceDay, defects_of};
 use sunbake_runtime::testing::masks::gpu;
 use sunbake_tests::needs::{of_gas_station, of_scene};
 
@@ -57,7 +57,7 @@ fn errors_are_within_what_is_written(name: &str, scene: &Path, variants: &[Varia
     let gpu = gpu();
     let scene = load(scene, &LoadLimits { max_memory_bytes: 8 << 30 }).unwrap();
     let stage = Stage::plain(scene, Some(june()));
-    let day = Day::new(&stage, 64, times());
+    let day = ReferenceDay::new(&stage, 64, times());
     let bounds = bounds_of(name);
     let mut all = Vec::new();
     for (&variant, &size_texels) in variants.iter().flat_map(|v| sizes.iter().map(move |s| (v, s))) {
@@ -85,7 +85,7 @@ const RECOMMENDED: [Variant; 4] = [Variant::Cascades, Variant::Pcf16, Variant::P
 fn recommended_maps_have_neither_acne_nor_leaks(scene: &Path) {
     let gpu = gpu();
     let stage = Stage::plain(load(scene, &LoadLimits::default()).unwrap(), Some(june()));
-    let day = Day::new(&stage, 128, times());
+    let day = ReferenceDay::new(&stage, 128, times());
     for variant in RECOMMENDED {
         let found = defects_of(&gpu, &day, MapSettings::new(variant), true).unwrap();
         println!("{variant}: {:.3} % wrong, mean error {:.5}", found.share_wrong() * 100.0, found.mean_error());
