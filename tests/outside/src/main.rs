@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let sun = SunRequest::Keyed { json: SUN.into(), north_deg: 0.0 };
     let settings = BakeSettings { page_size_texels: 128, ..BakeSettings::draft(sun) };
     let bake = sunbake::bake_scene(&scene, &settings, &Silent)?;
-    let stage = Stage::of_bake(scene, &bake)?;
+    let stage = Stage::of_bake(bake)?;
 
     let (device, queue) = own_device()?;
     let gpu = Gpu::from_device(device.clone(), queue.clone());
