@@ -1,6 +1,6 @@
 //! Sorted, disjoint intervals of path time: the answer to "when does this point see the light?".
 //!
-//! Below every room that makes or reads such answers: sun paths, visibility and maps.
+//! Sun paths, visibility and maps all use them, so they are a module of their own below those.
 
 /// Lit intervals of one point.
 ///

@@ -1,5 +1,5 @@
-//! Covered texels of a set with all that a second ray tracer needs to check them: where the point is, which plane it
-//! lies in, where rays start, and what is stored.
+//! Lists covered texels of a set with everything that another ray tracer needs to check them: surface point, plane, ray
+//! origins, and the stored values.
 
 use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
@@ -9,7 +9,7 @@ use crate::trace::Tracer;
 use glam::DVec3;
 use serde::Serialize;
 
-/// One covered texel.
+/// One covered texel, as `sunbake texels` prints it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Texel {
     /// Index of the atlas page.
@@ -24,45 +24,45 @@ pub struct Texel {
     pub position: [f64; 3],
     /// Unit normal of the surface's plane, world space.
     pub normal: [f64; 3],
-    /// Whether light from behind the plane counts as well.
+    /// Whether light from behind the plane counts too.
     pub double_sided: bool,
-    /// Where rays towards suns before the plane start, world space, metres.
+    /// Origin of rays towards suns in front of the plane, world space, metres.
     pub origin: [f64; 3],
-    /// Where rays towards suns behind the plane start, if those count.
+    /// Origin of rays towards suns behind the plane, if they count; world space, metres.
     pub origin_back: Option<[f64; 3]>,
-    /// When the texel sees the sun, as stored; of several lanes, the middle one.
+    /// Stored path times (0 to 1) from when to when the texel sees the sun; of several lanes, the middle one's.
     pub lit: Vec<[f64; 2]>,
-    /// Every lane's times, where a set has several.
+    /// Every lane's times, if the set has several lanes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lanes: Vec<TexelLane>,
-    /// When the texel sees the lamp, as stored, if the set has one.
+    /// Stored path times (0 to 1) from when to when the texel sees the lamp, if the set has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lamp: Option<Vec<[f64; 2]>>,
-    /// Ambient occlusion of the front as stored, 0 is occluded, if the set has it.
+    /// Stored ambient visibility of the front, 0 (occluded) to 1, if the set has it.
     pub ao: Option<f64>,
-    /// That of the back, of double-sided surfaces.
+    /// The same of the back, for double-sided surfaces.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ao_back: Option<f64>,
-    /// Bent normal of the front as stored, world space, if the set has it.
+    /// Stored bent normal of the front, world space, at most unit length, if the set has it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bent: Option<[f64; 3]>,
-    /// Sky visibility of the front in spherical harmonics as stored, if the set has it.
+    /// Stored sky visibility of the front: nine coefficients of spherical harmonics, if the set has them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sky: Option<[f64; 9]>,
 }
 
-/// What is stored of one texel along one lane.
+/// One texel's stored times along one lane.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TexelLane {
-    /// Declination less the centre's.
+    /// The lane's declination less the centre's, in degrees.
     pub offset_deg: f64,
-    /// Share of the disc's area.
+    /// Share of the sun's disc, 0 to 1.
     pub weight: f64,
-    /// When the texel sees the lane.
+    /// Path times (0 to 1) from when to when the texel sees the lane.
     pub lit: Vec<[f64; 2]>,
 }
 
-/// Draws `count` covered texels (all, if there are fewer), in page and row order. The same seed draws the same ones.
+/// Picks `count` random covered texels (all, if there are fewer), in page and row order. The same seed picks the same texels.
 pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
     let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
     let atlas = set.manifest.atlas(&scene);
@@ -107,14 +107,14 @@ fn describe(
         lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
         lanes: if lanes.len() > 1 { lanes } else { Vec::new() },
         lamp: maps.lamp.as_ref().map(|layers| stored_intervals(layers, sample.texel as usize, set.bits)),
-        ao: front.map(|side| openness(side, texel)),
-        ao_back: back.filter(|_| point.is_double_sided).map(|side| openness(side, texel)),
+        ao: front.map(|side| ambient_visibility(side, texel)),
+        ao_back: back.filter(|_| point.is_double_sided).map(|side| ambient_visibility(side, texel)),
         bent: front.and_then(|side| side.bent.as_ref()).map(|bent| bent[texel].map(decoded)),
         sky: front.and_then(|side| side.sky.as_ref()).map(|sky| sky[texel].map(decoded)),
     }
 }
 
-fn openness(side: &AmbientSide, texel: usize) -> f64 {
+fn ambient_visibility(side: &AmbientSide, texel: usize) -> f64 {
     f64::from(decode_open(side.open[texel]))
 }
 
@@ -130,8 +130,8 @@ fn of_lane(LaneMaps { lane, layers }: &LaneMaps, texel: usize, bits: Bits) -> Te
     }
 }
 
-/// `count` different numbers below `total`, ascending: selection sampling (Knuth, *The Art of Computer Programming*,
-/// volume 2, algorithm 3.4.2 S).
+/// `count` different random numbers below `total`, ascending. Based on: selection sampling (Knuth, *The Art of Computer
+/// Programming*, volume 2, algorithm 3.4.2 S).
 fn pick(total: usize, count: usize, seed: u64) -> Vec<usize> {
     let mut state = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut picked = Vec::with_capacity(count.min(total));
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn picking_gives_as_many_different_ones_as_there_are() {
+    fn picked_numbers_are_different_and_as_many_as_possible() {
         for (total, count) in [(0, 5), (3, 5), (5, 5), (1000, 10), (1000, 0)] {
             let picked = pick(total, count, 42);
             assert_eq!(picked.len(), count.min(total));

@@ -1,8 +1,8 @@
-//! The binary chunk, and the views and accessors into it.
+//! The binary chunk of a GLB file, with its buffer views and accessors.
 
 use serde_json::{Value, json};
 
-/// Grows as data is added; every view starts at a multiple of four bytes.
+/// A binary chunk under construction. Every view starts at a multiple of four bytes.
 #[derive(Default)]
 pub(super) struct Binary {
     pub bytes: Vec<u8>,
@@ -10,12 +10,12 @@ pub(super) struct Binary {
     pub accessors: Vec<Value>,
 }
 
-/// What a view feeds on a GPU.
+/// Targets of buffer views, as numbered by glTF.
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 impl Binary {
-    /// Adds bytes as they are, for an image.
+    /// Adds raw bytes, for an image. Returns the view's index.
     pub fn add_view(&mut self, bytes: impl IntoIterator<Item = u8>) -> usize {
         let start = self.bytes.len();
         self.bytes.extend(bytes);
@@ -35,7 +35,7 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// Adds vectors of one, two, three or four numbers, one a vertex.
+    /// Adds an attribute of one to four numbers per vertex. Returns the accessor's index.
     pub fn add_vectors<const N: usize>(&mut self, vectors: impl Iterator<Item = [f32; N]>) -> usize {
         let start = self.bytes.len();
         let view = self.add_targeted_view(ARRAY_BUFFER, vectors.flatten().flat_map(f32::to_le_bytes));
@@ -46,12 +46,12 @@ impl Binary {
         }))
     }
 
-    /// Adds numbers, one a vertex.
+    /// Adds an attribute of one number per vertex.
     pub fn add_scalars(&mut self, numbers: impl Iterator<Item = f32>) -> usize {
         self.add_vectors(numbers.map(|number| [number]))
     }
 
-    /// Adds positions, with the bounds that glTF demands of them.
+    /// Adds positions, with the bounds that glTF requires.
     pub fn add_positions(&mut self, positions: impl Iterator<Item = [f32; 3]> + Clone) -> usize {
         let fold = |start: f32, pick: fn(f32, f32) -> f32| {
             positions.clone().fold([start; 3], |m, p| [0, 1, 2].map(|k| pick(m[k], p[k])))
@@ -63,7 +63,7 @@ impl Binary {
         accessor
     }
 
-    /// Adds indices, in 16 bits where that is enough (65,535 itself is reserved).
+    /// Adds indices, with 16 bits if possible (65,535 itself is reserved).
     pub fn add_indices(&mut self, indices: &[u32]) -> usize {
         let is_short = indices.iter().all(|&index| index < 0xFFFF);
         let (view, component) = match is_short {

@@ -1,11 +1,11 @@
-//! Materials, their textures, and the images byte for byte as they came.
+//! Writes materials, their textures, and the images' original bytes.
 
 use super::binary::Binary;
 use crate::scene::{Alpha, Image, Material, Scene, TextureRef, Wrap};
 use glam::Mat3;
 use serde_json::{Map, Value, json};
 
-/// The lists that materials fill.
+/// Lists of the JSON that materials fill.
 #[derive(Default)]
 pub(super) struct WrittenMaterials {
     pub materials: Vec<Value>,
@@ -32,7 +32,7 @@ fn image(image: &Image, binary: &mut Binary) -> Value {
     json!({ "bufferView": view, "mimeType": image.mime_type })
 }
 
-/// The index of an equal entry, which is added if there is none.
+/// The index of an equal entry; the entry is added if there is none.
 pub(super) fn index_of(list: &mut Vec<Value>, value: Value) -> usize {
     list.iter().position(|known| *known == value).unwrap_or_else(|| {
         list.push(value);
@@ -69,7 +69,7 @@ impl WrittenMaterials {
         written
     }
 
-    /// Emission above 1 needs an extension to say so.
+    /// Emission above 1 needs an extension.
     fn add_emission(&mut self, material: &Material, written: &mut Value, extensions: &mut Map<String, Value>) {
         let strength = material.emissive.max_element();
         if strength > 1.0 {
@@ -93,7 +93,7 @@ impl WrittenMaterials {
         info
     }
 
-    /// Notes that an extension is used, and gives its name back.
+    /// Lists an extension as used. Returns its name.
     fn extension(&mut self, name: &str) -> String {
         index_of(&mut self.extensions, json!(name));
         name.to_owned()
@@ -108,7 +108,7 @@ fn wrap_code(wrap: Wrap) -> u32 {
     }
 }
 
-/// Takes the matrix apart into offset, turn and scale; see `scene::materials` for how it is put together.
+/// Decomposes the matrix into offset, rotation and scale: the inverse of what `scene::materials` does.
 fn transform(matrix: &Mat3) -> Value {
     let (x, y) = (matrix.x_axis.truncate(), matrix.y_axis.truncate());
     let rotation = if x.length_squared() > 0.0 { (-x.y).atan2(x.x) } else { y.x.atan2(y.y) };

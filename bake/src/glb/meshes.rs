@@ -1,4 +1,4 @@
-//! Meshes: the primitives that a node draws, as one glTF mesh, shared by all nodes that draw the same.
+//! Writes meshes: the primitives of a node form one glTF mesh, shared by all nodes with the same primitives.
 
 use super::Occlusion;
 use super::binary::Binary;
@@ -11,35 +11,35 @@ use glam::{Vec2, Vec4};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Which of the scene's meshes form the primitives of which glTF mesh.
+/// The scene's meshes grouped into glTF meshes.
 pub(super) struct Groups {
     /// For each glTF mesh, its primitives.
     pub meshes: Vec<Vec<MeshPrimitive>>,
     /// For each node, its glTF mesh.
     pub mesh_of_node: Vec<Option<usize>>,
-    /// For each instance, its node and primitive.
+    /// For each instance, its node and the index of its primitive in that node's mesh.
     pub primitives_of_instances: Vec<(usize, usize)>,
 }
 
-/// A primitive: one of [`Scene::meshes`] and, where it is not the same for all of its instances, which of them.
+/// A primitive: one of [`Scene::meshes`] and, if each instance has its own primitive, the instance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct MeshPrimitive {
     mesh: usize,
     instance: Option<usize>,
 }
 
-/// What instances show beside their mesh.
+/// Baked data that differs between the instances of a mesh.
 pub(super) enum PerInstance<'a> {
-    /// Nothing: their coordinates are the layout's, their material the mesh's.
+    /// None: coordinates are the layout's, the material is the mesh's.
     Nothing,
-    /// Occlusion, on page coordinates, with the material of every instance.
+    /// Occlusion textures on page coordinates, with the material index of every instance.
     Occlusion(Occlusion<'a>, Vec<usize>),
-    /// Openness of every instance's vertices, and no coordinates of a bake.
+    /// Ambient visibility (0 to 1) of every instance's vertices, and no baked coordinates.
     VertexVisibility(VertexAttribute, &'a [Vec<f32>]),
 }
 
 impl Groups {
-    /// `by_instance`: no primitive is shared between instances.
+    /// `by_instance`: every instance gets its own primitive.
     pub fn new(scene: &Scene, by_instance: bool) -> Self {
         let mut drawn = vec![Vec::new(); scene.nodes.len()];
         let mut primitives_of_instances = Vec::with_capacity(scene.instances.len());
@@ -68,7 +68,7 @@ pub(super) fn write(
     per_instance: &PerInstance,
     binary: &mut Binary,
 ) -> Vec<Value> {
-    let mut shared: Vec<Option<Shared>> = scene.meshes.iter().map(|_| None).collect();
+    let mut shared: Vec<Option<SharedData>> = scene.meshes.iter().map(|_| None).collect();
     let mut write_group = |group: &Vec<MeshPrimitive>| {
         let mut written = Map::new();
         if let Some(name) = group.first().and_then(|first| scene.meshes[first.mesh].name.as_ref()) {
@@ -76,7 +76,7 @@ pub(super) fn write(
         }
         let mut one = |&MeshPrimitive { mesh, instance }: &MeshPrimitive| {
             let layout = &layouts[mesh];
-            let shared = shared[mesh].get_or_insert_with(|| Shared::new(scene, mesh, layout, binary));
+            let shared = shared[mesh].get_or_insert_with(|| SharedData::new(scene, mesh, layout, binary));
             let material = scene.meshes[mesh].material;
             let mut add_uvs = |uvs: &[Vec2]| binary.add_vectors(uvs.iter().map(Vec2::to_array));
             match (per_instance, instance) {
@@ -96,7 +96,7 @@ pub(super) fn write(
     groups.meshes.iter().map(&mut write_group).collect()
 }
 
-/// Adds openness as it is stored at vertices.
+/// Adds ambient visibility as a vertex attribute.
 fn add_ambient_visibility(mesh: &Mesh, attribute: VertexAttribute, open: &[f32], binary: &mut Binary) -> usize {
     let color = |(vertex, &open): (usize, &f32)| {
         let color = mesh.colors.as_ref().map_or(Vec4::ONE, |colors| colors[vertex]);
@@ -108,13 +108,13 @@ fn add_ambient_visibility(mesh: &Mesh, attribute: VertexAttribute, open: &[f32],
     }
 }
 
-/// What all instances of a mesh share.
-struct Shared {
+/// Attributes and indices that all instances of a mesh share.
+struct SharedData {
     attributes: Map<String, Value>,
     indices: usize,
 }
 
-impl Shared {
+impl SharedData {
     fn new(scene: &Scene, index: usize, layout: &Layout, binary: &mut Binary) -> Self {
         let mesh = &scene.meshes[index];
         let source = || layout.vertices.iter().map(|&vertex| vertex as usize);
@@ -146,8 +146,8 @@ impl Shared {
         json!({ "attributes": attributes, "indices": self.indices, "material": material })
     }
 
-    /// A primitive with baked coordinates. They stand in for the picture's where it has none, because set 1 must not be
-    /// without set 0.
+    /// A primitive with baked coordinates in set 1. Without texture coordinates they are set 0 as well, because set 1 is
+    /// invalid without set 0.
     fn primitive(&self, baked: usize, material: usize) -> Value {
         let mut attributes = self.attributes.clone();
         attributes.entry("TEXCOORD_0").or_insert_with(|| json!(baked));
@@ -155,13 +155,13 @@ impl Shared {
     }
 }
 
-/// What `TEXCOORD_0` holds.
+/// The content of `TEXCOORD_0`.
 enum FirstTexcoords<'a> {
-    /// The set that the base colour uses, or the file's first.
+    /// The set that the base colour uses, or else the file's first.
     Set(&'a [Vec2]),
-    /// The base colour has a texture and the mesh has no coordinates for it: all of it shows one texel.
+    /// Zeros: the base colour has a texture, but the mesh has no coordinates, so it shows a single texel.
     Origin,
-    /// Nothing wants it.
+    /// No set is needed.
     None,
 }
 

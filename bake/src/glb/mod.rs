@@ -1,11 +1,12 @@
-//! Writes `scene.glb`: the scene as any glTF viewer shows it, with the bake's own texture coordinates.
+//! Writes `scene.glb`: the scene for any glTF viewer, with the bake's own texture coordinates.
 //!
-//! What the file keeps of its source is what sunbake understands: the hierarchy with its names and full-precision
-//! matrices, one mesh per glTF mesh, vertices as they were, base colours with their images byte for byte, cameras. What
-//! it adds is `TEXCOORD_1`, the layout of each mesh; vertices on chart borders are doubled. `TEXCOORD_0` is whichever
-//! set the picture uses, since viewers expect sets to be numbered from 0 without a gap.
+//! The file keeps everything of its source that sunbake reads: the hierarchy with names and full-precision matrices, meshes
+//! with unchanged vertices, base colours with their images' original bytes, cameras. It adds `TEXCOORD_1`, the layout of
+//! each mesh; vertices on chart borders are duplicated. `TEXCOORD_0` is the set that the base colour uses, since viewers
+//! expect sets to be numbered from 0 without gaps.
 //!
-//! Same scene, same bytes. Reading the file back gives the same nodes, instances and triangles in the same order.
+//! The same scene gives the same bytes. Reading the file back gives the same nodes, instances and triangles in the same
+//! order.
 //!
 //! Based on: Khronos Group, *glTF 2.0 Specification*.
 
@@ -23,30 +24,30 @@ use materials::WrittenMaterials;
 use meshes::{Groups, PerInstance};
 use serde_json::{Map, Value, json};
 
-/// A scene in GLB's form, and where its instances stand in it.
+/// A scene as a GLB file, and where its instances are in it.
 #[derive(Debug, Clone)]
 pub struct WrittenScene {
-    /// The file.
+    /// Content of the file.
     pub bytes: Vec<u8>,
     /// For each of [`Scene::instances`], its node and the index of its primitive in that node's mesh.
     pub primitives_of_instances: Vec<(usize, usize)>,
-    /// Whether `TEXCOORD_1` holds page coordinates, not those of layouts.
+    /// Whether `TEXCOORD_1` holds page coordinates instead of layout coordinates.
     pub has_page_uvs: bool,
 }
 
-/// The scene is larger than GLB's 32-bit lengths can say.
+/// The scene is too large for GLB's 32-bit lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("scene.glb would have {bytes} bytes, and the format ends at 4294967295; bake the scene in parts")]
 pub struct GlbTooLarge {
-    /// How large it would be.
+    /// Size that the file would have.
     pub bytes: u64,
 }
 
-/// Writes a scene with its layouts, one per [`Scene::meshes`], and with occlusion textures, if it has any.
+/// Writes a scene with its layouts, one per [`Scene::meshes`], and with occlusion textures, if given.
 ///
 /// # Errors
 ///
-/// Where the file would have 4 GiB or more.
+/// If the file would have 4 GiB or more.
 pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>) -> Result<WrittenScene, GlbTooLarge> {
     let mut binary = Binary::default();
     let groups = Groups::new(scene, occlusion.is_some());
@@ -63,11 +64,12 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
     })
 }
 
-/// Writes a scene with openness at its vertices (for each instance, that of its mesh's vertices) and no baked coordinates.
+/// Writes a scene with ambient visibility at its vertices (for each instance, one number per vertex of its mesh, 0 to 1) and
+/// without baked coordinates.
 ///
 /// # Errors
 ///
-/// Where the file would have 4 GiB or more.
+/// If the file would have 4 GiB or more.
 pub fn write_vertices(scene: &Scene, attribute: VertexAttribute, open: &[Vec<f32>]) -> Result<Vec<u8>, GlbTooLarge> {
     let mut binary = Binary::default();
     let groups = Groups::new(scene, true);

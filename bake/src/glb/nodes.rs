@@ -1,4 +1,4 @@
-//! Nodes and cameras.
+//! Writes nodes and cameras.
 
 use super::meshes::Groups;
 use crate::scene::{Node, Scene};
@@ -27,7 +27,7 @@ pub(super) fn write(scene: &Scene, groups: &Groups) -> Vec<Value> {
     nodes.into_iter().map(Value::from).collect()
 }
 
-/// A name, and a translation where that says it all, else the matrix: both give back the same `f64` numbers.
+/// Name and transform: a translation if that is all, else the matrix. Both keep the exact `f64` numbers.
 fn transform(node: &Node) -> Map<String, Value> {
     let mut written = Map::new();
     if let Some(name) = &node.name {
@@ -43,7 +43,7 @@ fn transform(node: &Node) -> Map<String, Value> {
     written
 }
 
-/// The near plane is a guess: a ten-thousandth of the scene. The far plane is left open.
+/// Cameras with a near plane at a ten-thousandth of the scene's half size and no far plane.
 pub(super) fn cameras(scene: &Scene) -> Vec<Value> {
     let near = (scene.half_extent_m.max_element() * 1e-4).max(1e-6);
     let camera = |camera: &crate::scene::Camera| {

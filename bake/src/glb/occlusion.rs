@@ -1,7 +1,7 @@
-//! Ambient occlusion where every viewer looks: `occlusionTexture`, on page coordinates in `TEXCOORD_1`.
+//! Ambient occlusion for standard viewers: `occlusionTexture`, on page coordinates in `TEXCOORD_1`.
 //!
-//! A layout is shared by all instances of a mesh, but a standard texture knows of no rectangles. So each instance gets
-//! coordinates of its own, the page's; positions, normals and indices stay shared.
+//! A layout is shared by all instances of a mesh, but a standard texture has no rectangle per instance. So each instance
+//! gets its own page coordinates; positions, normals and indices stay shared.
 
 use super::binary::Binary;
 use super::materials::{WrittenMaterials, index_of};
@@ -11,15 +11,15 @@ use crate::scene::Scene;
 use glam::Vec2;
 use serde_json::json;
 
-/// A page's occlusion texture, as viewers read it: 8 bits, and where there are two sides the one that sees more. Most models
-/// that are two-sided throughout are closed, and their insides dark; and an eye is mostly where it is open.
+/// A page's occlusion texture for viewers: 8 bits, and of two sides the brighter one. Most models whose materials are all
+/// double-sided are closed, with dark insides, and cameras are mostly outside.
 #[derive(Debug, Clone)]
 pub struct OcclusionPage {
     png: Vec<u8>,
 }
 
 impl OcclusionPage {
-    /// From a page of ambient light.
+    /// Encodes a page's ambient visibility.
     pub fn new(size: PageSize, maps: &AmbientMaps) -> Self {
         let front = &maps.front.open;
         let grey: Vec<u8> = match &maps.back {
@@ -38,14 +38,14 @@ impl OcclusionPage {
 /// Occlusion of a scene's instances.
 #[derive(Debug, Clone, Copy)]
 pub struct Occlusion<'a> {
-    /// Where their texels lie.
+    /// The instances' layouts and placements.
     pub atlas: &'a Atlas,
-    /// Textures, one a page.
+    /// Textures, one per page.
     pub pages: &'a [OcclusionPage],
 }
 
 impl Occlusion<'_> {
-    /// Coordinates of an instance's layout on its page.
+    /// Page coordinates of the vertices of an instance's layout.
     pub(super) fn page_uvs(&self, scene: &Scene, instance: usize) -> Vec<Vec2> {
         let placement = &self.atlas.placements[instance];
         let layout = &self.atlas.layouts[scene.instances[instance].mesh];
@@ -58,10 +58,10 @@ impl Occlusion<'_> {
         (!placement.is_empty()).then_some(placement.page as usize)
     }
 
-    /// Adds each page's texture to the materials of what lies on it; a material on several pages becomes several. Gives the
-    /// material of every instance.
+    /// Adds each page's texture to the materials used on the page; a material on several pages is duplicated. Returns the
+    /// material index of every instance.
     pub(super) fn add_to(&self, scene: &Scene, written: &mut WrittenMaterials, binary: &mut Binary) -> Vec<usize> {
-        // No smaller levels: they would blend charts that lie side by side.
+        // No mip levels: they would blend neighbouring charts.
         let sampler = json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 });
         let sampler = index_of(&mut written.samplers, sampler);
         let mut add_page = |page: &OcclusionPage| {

@@ -1,12 +1,12 @@
-//! Lamps that move through the scene: where a lamp stands at every moment `t` in [0, 1].
+//! Lamps that move through the scene: a lamp's position at every path time `t` in [0, 1].
 //!
-//! A path is a chain of straight segments, each passed at constant speed. From one point, all places of the lamp on one
-//! segment lie in a triangle with the point, so visibility along it has closed-form answers, and what stands beyond the
-//! lamp hides nothing (`visibility/lamp`). A file of keys makes a path (`parse.rs`).
+//! A path is a chain of straight segments, each passed at constant speed. A point and a segment span a triangle, so
+//! visibility along the segment has closed-form solutions, and surfaces beyond the lamp do not hide it
+//! (`visibility/lamp`). Paths are read from path files (`parse.rs`).
 //!
-//! The lamp is a ball. Playback takes it as a line along its own path, as it takes the sun (GPU Gems, chapter 13, "linear
-//! light"): at `t` it is the stretch of path within one radius of the centre, before and behind, and what is seen of it
-//! is the lit share of the time in which the centre passes that stretch ([`LampPath::window_t`]).
+//! The lamp is a sphere. Playback treats it as a line along its own path, as it treats the sun (GPU Gems, chapter 13,
+//! "linear light"). At `t` the line is the part of the path within one radius before and behind the centre. The lamp's
+//! visibility is the lit share of the time in which the centre passes that part ([`LampPath::window_t`]).
 
 mod parse;
 
@@ -14,35 +14,37 @@ pub use parse::{LampFileError, is_lamp, parse_lamp};
 
 use glam::DVec3;
 
-/// Largest coordinate of a key, in metres: beyond it a metre is lost in rounding.
+/// Largest coordinate of a key, in metres.
 const MOST_M: f64 = 1e9;
 /// Smallest distance between neighbouring keys, in metres.
 const LEAST_STEP_M: f64 = 1e-6;
-/// How far apart, in `t`, the path's ends may be from 0 and 1 and still be taken for them.
+/// Largest distance, in `t`, of the path's ends from 0 and 1; also the least time between keys.
 const END_TOLERANCE_T: f64 = 1e-9;
 
-/// A place and when the lamp is there.
+/// A position of the lamp at a path time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LampKey {
-    /// When.
+    /// Path time, 0 to 1.
     pub t: f64,
-    /// Where.
+    /// Position of the lamp's centre, in metres.
     pub position_m: DVec3,
 }
 
-/// From one key to the next.
+/// The straight line from one key to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LampSegment {
-    /// Where it starts and ends.
+    /// Start and end, in metres.
     pub ends_m: [DVec3; 2],
-    /// When.
+    /// Path times at the start and the end, 0 to 1.
     pub t: [f64; 2],
 }
 
-/// The path of a lamp over `t` in [0, 1], in a space that its owner knows: world, as made; bake space for engines.
+/// The path of a lamp over `t` in [0, 1]. Path files give world space; engines need bake space
+/// ([`LampPath::relative_to`]).
 ///
-/// Guarantees, made by [`LampPath::new`]: two keys at least, the first at exactly t = 0 and the last at exactly t = 1;
-/// times ascend; neighbouring keys lie apart; every number is finite, the radius not negative and the duration positive.
+/// Guarantees, made by [`LampPath::new`]: at least two keys, the first at exactly t = 0 and the last at exactly t = 1;
+/// times ascend; neighbouring keys differ in position; every number is finite, the radius not negative, the duration
+/// positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LampPath {
     keys: Vec<LampKey>,
@@ -50,31 +52,31 @@ pub struct LampPath {
     duration_min: f64,
 }
 
-/// Why keys make no path of a lamp.
+/// Why keys are not a valid lamp path.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LampError {
-    /// One key or none.
-    #[error("the lamp's path has {0} keys: give at least two places")]
+    /// Fewer than two keys.
+    #[error("the lamp's path has {0} keys: give at least two positions")]
     Count(usize),
-    /// Not finite, or too far away.
+    /// A position is not finite or too large.
     #[error("key {index} of the lamp's path (counted from 0) is at {position_m}: give metres from -1e9 to 1e9")]
     Position {
         /// Which key.
         index: usize,
-        /// Where it is said to be.
+        /// The position given, in metres.
         position_m: DVec3,
     },
-    /// Two keys in one place.
+    /// Two neighbouring keys have the same position.
     #[error(
-        "keys {index} and {next} of the lamp's path (counted from 0) are in the same place: a lamp that stands still has \
-         no path; drop one of them",
+        "keys {index} and {next} of the lamp's path (counted from 0) are in the same place: a lamp that does not move \
+         has no path; remove one of them",
         next = .index + 1
     )]
-    StandsStill {
+    NoMotion {
         /// The first of the two.
         index: usize,
     },
-    /// Not ascending from 0 to 1.
+    /// Times do not ascend from 0 to 1.
     #[error(
         "the times of the lamp's keys must ascend from 0 to 1, and the one of key {index} (counted from 0) does not"
     )]
@@ -118,22 +120,22 @@ impl LampPath {
         &self.keys
     }
 
-    /// Radius of the lamp.
+    /// Radius of the lamp, in metres.
     pub fn radius_m(&self) -> f64 {
         self.radius_m
     }
 
-    /// Minutes that the path takes.
+    /// Clock time from t = 0 to t = 1, in minutes.
     pub fn duration_min(&self) -> f64 {
         self.duration_min
     }
 
-    /// The same places at the same `t`, over another time.
+    /// The same path with another duration.
     pub fn lasting(&self, duration_min: f64) -> Result<Self, LampError> {
         Self::new(self.keys.clone(), self.radius_m, duration_min)
     }
 
-    /// The same path in a space whose origin is at `origin_m` of this one.
+    /// The same path in a space with its origin at `origin_m` of this one.
     pub fn relative_to(&self, origin_m: DVec3) -> Self {
         let moved = |key: &LampKey| LampKey { position_m: key.position_m - origin_m, ..*key };
         Self { keys: self.keys.iter().map(moved).collect(), ..self.clone() }
@@ -146,20 +148,20 @@ impl LampPath {
             .map(|pair| LampSegment { ends_m: [pair[0].position_m, pair[1].position_m], t: [pair[0].t, pair[1].t] })
     }
 
-    /// Where the lamp's centre is at `t` (clamped to [0, 1]).
+    /// Position of the lamp's centre at `t` (clamped to [0, 1]).
     pub fn position_m(&self, t: f64) -> DVec3 {
         let [from, to] = self.around(t);
         from.position_m.lerp(to.position_m, ((t - from.t) / (to.t - from.t)).clamp(0.0, 1.0))
     }
 
-    /// When the centre is within one radius of where it is at `t`, along the path: one diameter over the speed, less what
-    /// lies before the path's start and after its end. Empty for a lamp without radius.
+    /// The path times in which the centre is within one radius, along the path, of its position at `t`: as long as the
+    /// centre takes for one diameter, cut off at the path's start and end. Empty for a lamp with radius 0.
     pub fn window_t(&self, t: f64) -> [f64; 2] {
-        let passed_m = self.passed_m(t.clamp(0.0, 1.0));
+        let length_until_m = self.length_until_m(t.clamp(0.0, 1.0));
         if self.radius_m == 0.0 {
             return [t; 2];
         }
-        [self.t_passed(passed_m - self.radius_m), self.t_passed(passed_m + self.radius_m)]
+        [self.t_at_length(length_until_m - self.radius_m), self.t_at_length(length_until_m + self.radius_m)]
     }
 
     /// The keys before and after `t`.
@@ -168,27 +170,27 @@ impl LampPath {
         [self.keys[next - 1], self.keys[next]]
     }
 
-    /// Length of the path until `t`.
-    fn passed_m(&self, t: f64) -> f64 {
+    /// Length of the path from its start to `t`, in metres.
+    fn length_until_m(&self, t: f64) -> f64 {
         let share = |s: &LampSegment| ((t - s.t[0]) / (s.t[1] - s.t[0])).clamp(0.0, 1.0);
         self.segments().map(|s| share(&s) * s.length_m()).sum()
     }
 
-    /// When so much of the path's length is passed, within [0, 1].
-    fn t_passed(&self, mut length_m: f64) -> f64 {
+    /// Path time, in [0, 1], at a length from the path's start.
+    fn t_at_length(&self, mut length_m: f64) -> f64 {
         for segment in self.segments() {
-            let all_m = segment.length_m();
-            if length_m < all_m {
-                return segment.t[0] + (length_m / all_m).max(0.0) * (segment.t[1] - segment.t[0]);
+            let segment_m = segment.length_m();
+            if length_m < segment_m {
+                return segment.t[0] + (length_m / segment_m).max(0.0) * (segment.t[1] - segment.t[0]);
             }
-            length_m -= all_m;
+            length_m -= segment_m;
         }
         1.0
     }
 }
 
 impl LampSegment {
-    /// How long it is.
+    /// Length in metres.
     pub fn length_m(&self) -> f64 {
         self.ends_m[0].distance(self.ends_m[1])
     }
@@ -196,18 +198,18 @@ impl LampSegment {
 
 fn check_positions(keys: &[LampKey]) -> Result<(), LampError> {
     for (index, LampKey { position_m, .. }) in keys.iter().enumerate() {
-        // Not `> MOST_M`: a NaN is to be refused.
+        // Written so that NaN is an error too.
         if !(position_m.is_finite() && position_m.abs().max_element() <= MOST_M) {
             return Err(LampError::Position { index, position_m: *position_m });
         }
     }
-    let still = |pair: &[LampKey]| pair[0].position_m.distance(pair[1].position_m) < LEAST_STEP_M;
-    keys.windows(2).position(still).map_or(Ok(()), |index| Err(LampError::StandsStill { index }))
+    let is_same = |pair: &[LampKey]| pair[0].position_m.distance(pair[1].position_m) < LEAST_STEP_M;
+    keys.windows(2).position(is_same).map_or(Ok(()), |index| Err(LampError::NoMotion { index }))
 }
 
 fn check_times(keys: &[LampKey]) -> Result<(), LampError> {
     let last = keys.len() - 1;
-    // Ranges, so that a NaN lies outside of them.
+    // Ranges, so that NaN is outside.
     let is_at = |index: usize, t: f64| (t - END_TOLERANCE_T..=t + END_TOLERANCE_T).contains(&keys[index].t);
     let ascends = |pair: &[LampKey]| (END_TOLERANCE_T..=2.0).contains(&(pair[1].t - pair[0].t));
     let wrong = if !is_at(0, 0.0) {
@@ -246,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_is_a_diameter_of_path_and_bends_with_it() {
+    fn the_window_is_one_diameter_of_the_path_around_corners_too() {
         let window = |t| bent().window_t(t);
         assert_eq!(window(0.25), [0.1875, 0.3125]);
         assert_eq!(window(0.5), [0.4375, 0.75]);
@@ -255,10 +257,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_path_is_refused() {
+    fn invalid_keys_are_refused() {
         let (near, far) = ((0.0, [0.0; 3]), (1.0, [1.0, 0.0, 0.0]));
         assert_eq!(path(&[near], 0.1), Err(LampError::Count(1)));
-        assert_eq!(path(&[near, (1.0, [0.0; 3])], 0.1), Err(LampError::StandsStill { index: 0 }));
+        assert_eq!(path(&[near, (1.0, [0.0; 3])], 0.1), Err(LampError::NoMotion { index: 0 }));
         for bad in [f64::NAN, f64::INFINITY, 2e9] {
             assert!(matches!(path(&[near, (1.0, [bad, 0.0, 0.0])], 0.1), Err(LampError::Position { index: 1, .. })));
         }

@@ -1,4 +1,4 @@
-//! A lamp's path from a file of keys: places at times, joined by straight lines.
+//! A lamp path from a path file: positions at given times, joined by straight lines.
 //!
 //! ```json
 //! { "radius_m": 0.05, "duration_min": 10,
@@ -7,8 +7,8 @@
 //!             { "t": 1, "position": [3, 2, -4] } ] }
 //! ```
 //!
-//! Positions are world space, in metres. `t` runs from 0 to 1; if no key has one, keys are evenly spaced. Without
-//! `radius_m` the lamp is a bulb of 5 cm; without `duration_min` the path takes a minute.
+//! Positions are in world space, in metres. `t` runs from 0 to 1; if no key has a `t`, keys are evenly spaced.
+//! Defaults: a radius of 5 cm, a duration of one minute.
 
 use super::{LampError, LampKey, LampPath};
 use crate::sun::{KeyError, key_times};
@@ -16,21 +16,21 @@ use glam::DVec3;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-/// Radius of a lamp that has none of its own.
+/// Default radius, in metres.
 const RADIUS_M: f64 = 0.05;
-/// Minutes of a path that has none of its own.
+/// Default duration, in minutes.
 const DURATION_MIN: f64 = 1.0;
 
-/// Why a file of keys makes no path of a lamp.
+/// Why a path file is not a lamp path.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LampFileError {
     /// The keys themselves are wrong.
     #[error(transparent)]
     Keys(#[from] KeyError),
-    /// A sun's path where a lamp's was asked for.
+    /// The file is a sun path.
     #[error("the lamp's path file has {0}")]
     OfSun(&'static str),
-    /// The places make no path.
+    /// The positions are not a valid path.
     #[error(transparent)]
     Path(#[from] LampError),
 }
@@ -55,15 +55,15 @@ struct LampPathKey {
     elevation_deg: Option<IgnoredAny>,
 }
 
-/// Whether a file of keys means a lamp: some key has a position, or the lamp a radius. What else it has is for
-/// [`parse_lamp`] to refuse.
+/// Whether a path file is meant for a lamp: some key has a position, or the file has a radius. [`parse_lamp`] then
+/// checks the rest.
 pub fn is_lamp(json: &str) -> bool {
     let Ok(file) = serde_json::from_str::<serde_json::Value>(json) else { return false };
     let has_position = |key: &serde_json::Value| key.get("position").is_some();
     file.get("radius_m").is_some() || file["keys"].as_array().is_some_and(|keys| keys.iter().any(has_position))
 }
 
-/// Reads the path of a lamp, world space.
+/// Parses a lamp's path file. Positions are in world space.
 pub fn parse_lamp(json: &str) -> Result<LampPath, LampFileError> {
     let file: LampPathFile = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.angular_radius_deg.is_some() {
@@ -80,7 +80,7 @@ pub fn parse_lamp(json: &str) -> Result<LampPath, LampFileError> {
 fn lamp_key(index: usize, key: &LampPathKey, t: f64) -> Result<LampKey, KeyError> {
     let wrong = |problem: &str| KeyError::Key { index, problem: problem.to_owned() };
     if key.direction.is_some() || key.azimuth_deg.is_some() || key.elevation_deg.is_some() {
-        return Err(wrong("has a direction, which a lamp has not: give every key a 'position'"));
+        return Err(wrong("has a direction, which a lamp does not use: give every key a 'position'"));
     }
     let position = key.position.ok_or_else(|| wrong("has no 'position': give metres of the scene, as [0, 2, 0]"))?;
     Ok(LampKey { t, position_m: DVec3::from_array(position) })
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_places_is_told_from_one_of_directions() {
+    fn lamp_files_are_told_from_sun_files() {
         assert!(is_lamp(TWO) && is_lamp(r#"{"radius_m": 1}"#));
         for sun in ["", "[]", "{}", "7", r#"{"keys": 3}"#, r#"{"keys": [{"direction": [0, 1, 0]}]}"#] {
             assert!(!is_lamp(sun), "{sun}");
@@ -112,14 +112,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_lamp_is_refused_and_says_what_to_give() {
+    fn invalid_files_are_refused_and_say_what_to_give() {
         for (json, expected) in [
             (r#"{"keys": [{"position": [0, 1, 2]}]}"#, "give 2 to"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"direction": [0, 1, 0]}]}"#, "give every key a 'position'"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"azimuth_deg": 9, "position": [0, 1, 0]}]}"#, "a direction"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"t": 1}]}"#, "give every key one, or none"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {}]}"#, "has no 'position'"),
-            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 2]}]}"#, "stands still"),
+            (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 2]}]}"#, "does not move"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 1e10]}]}"#, "-1e9 to 1e9"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1, 1e999]}]}"#, "not understood"),
             (r#"{"keys": [{"position": [0, 1, 2]}, {"position": [0, 1]}]}"#, "not understood"),

@@ -1,15 +1,15 @@
-//! One arc of a sun path, and when it is on one side of a plane.
+//! One arc of a sun path, and when the sun on it is on one side of a plane.
 //!
-//! Theory: seen from one point, a sun of constant declination stays on a cone about the arc's axis. For any vector `n`,
+//! Theory: a sun of constant declination moves on a cone about the arc's axis. For any vector `n`,
 //! `n . dir(h) = A cos h + B sin h + C` with `A = cos d (n . zero)`, `B = cos d (n . axis x zero)` and
 //! `C = sin d (n . axis)`. With `R = hypot(A, B)` and `p = atan2(B, A)` that is `R cos(h - p) + C`, which is never
 //! negative if `C >= R`, always negative if `C < -R`, and otherwise not negative for `|h - p| <= w`,
 //! `w = acos(-C / R)`, repeated every full turn.
 //!
-//! Practice: `w` is taken as `atan2(sqrt(R - C) sqrt(R + C), -C)`, which keeps its digits where the plane is nearly
-//! tangent to the cone and where `R` is tiny. The arc may be longer than a full turn, so the answer is an iterator over
-//! turns; it allocates nothing. `A = B = 0` (the plane is square to the axis) needs no case of its own, and numbers that
-//! are not finite yield no interval instead of NaN.
+//! Practice: `w` is computed as `atan2(sqrt(R - C) sqrt(R + C), -C)`, which stays accurate where the plane is nearly
+//! tangent to the cone and where `R` is tiny. The arc may be longer than a full turn, so the result is an iterator over
+//! turns; it allocates nothing. `A = B = 0` (the plane is perpendicular to the axis) needs no special case, and NaN or
+//! infinite input yields no interval.
 
 use std::f64::consts::TAU;
 
@@ -18,16 +18,17 @@ use glam::DVec3;
 /// A turn about a fixed axis at constant declination: `dir(h) = cos d (cos h zero + sin h axis x zero) + sin d axis`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunArc {
-    /// Unit vector, world space: what the sun turns about, right-handed as `h` grows. For a real day that is the
-    /// *south* celestial pole, because the sky turns clockwise about the north one; declinations change sign with it.
+    /// Axis of rotation, a unit vector in world space, right-handed as `h` grows. For a real day it is the *south*
+    /// celestial pole, because the sky turns clockwise about the north pole; declinations have the opposite sign of the
+    /// almanac's.
     pub axis: DVec3,
-    /// Unit vector across the axis, world space: where `h` is zero.
+    /// Direction at `h` = 0 and declination 0: a unit vector perpendicular to the axis, world space.
     pub zero: DVec3,
-    /// Angle of the direction above the plane across the axis, in radians.
+    /// Angle of the direction above the plane perpendicular to the axis, in radians.
     pub declination_rad: f64,
     /// Hour angles at the arc's start and end, in radians, ascending.
     pub hour_angle_rad: [f64; 2],
-    /// Path times at the arc's start and end, ascending.
+    /// Path times at the arc's start and end, ascending, in [0, 1].
     pub t: [f64; 2],
 }
 
@@ -46,7 +47,7 @@ impl SunArc {
         h0 + (h1 - h0) * (t - t0) / (t1 - t0)
     }
 
-    /// Path time at an hour angle, clamped to the arc: its ends come out as exactly its `t`.
+    /// Path time at an hour angle, clamped to the arc. Its end points give exactly [`SunArc::t`].
     pub fn t_at_hour_angle(&self, hour_angle_rad: f64) -> f64 {
         let [h0, h1] = self.hour_angle_rad;
         let [t0, t1] = self.t;
@@ -59,7 +60,7 @@ impl SunArc {
         }
     }
 
-    /// Angle through which the sun moves across the sky for a unit of `t`, in radians.
+    /// Angular speed of the sun: radians per unit of `t`.
     pub fn speed_rad(&self) -> f64 {
         let [h0, h1] = self.hour_angle_rad;
         let [t0, t1] = self.t;
@@ -73,9 +74,9 @@ impl SunArc {
         [normal.dot(self.zero) * cos_d, normal.dot(square) * cos_d, normal.dot(self.axis) * sin_d]
     }
 
-    /// Path times of this arc at which the sun is not behind the plane across `normal` (any length): `[start, end]`
-    /// pairs of positive length, ascending, disjoint. At most two for an arc of up to a full turn, one more for each
-    /// further turn begun. A plane that contains the whole arc counts as not behind.
+    /// Path times of this arc at which the sun is not behind the plane with this `normal` (of any length): `[start,
+    /// end]` pairs of positive length, ascending, disjoint. At most two for an arc of up to a full turn, and one more
+    /// for each further turn begun. If the plane contains the whole arc, the sun is not behind it.
     pub fn half_space_intervals(&self, normal: DVec3) -> HalfSpaceIntervals {
         let [a, b, c] = self.half_space_coefficients(normal);
         let r = a.hypot(b);
@@ -87,7 +88,7 @@ impl SunArc {
         } else {
             return HalfSpaceIntervals { arc: *self, middle: 0.0, half_width: 0.0, turns: [0, -1] };
         };
-        // Casts saturate, and NaN becomes 0: the emptiness test in `next` then drops it.
+        // Casts saturate, and NaN becomes 0; `next` then drops the empty interval.
         let first = ((h0 - half_width - middle) / TAU).ceil() as i64;
         let last = ((h1 + half_width - middle) / TAU).floor() as i64;
         HalfSpaceIntervals { arc: *self, middle, half_width, turns: [first, last] }

@@ -1,4 +1,4 @@
-//! Calendar dates and clock times as people write them.
+//! Calendar dates and clock times, parsed and printed.
 //!
 //! Dates are proleptic Gregorian (ISO 8601). Day numbers count from 1970-01-01; based on: Howard Hinnant,
 //! "chrono-Compatible Low-Level Date Algorithms", 2013.
@@ -6,14 +6,14 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// First and last year a date may have: where the difference between clocks and the ephemeris's time is known or
+/// First and last year of a date: in this range the difference between clock time and the ephemeris's time is known or
 /// estimated (Espenak and Meeus, *Five Millennium Canon*).
 pub const YEARS: [i32; 2] = [1, 2999];
 
 /// Minutes in a day.
 pub const DAY_MIN: f64 = 1440.0;
 
-/// A day that exists, in the years that the ephemeris serves.
+/// A valid calendar date in [`YEARS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Date {
     year: i32,
@@ -21,7 +21,7 @@ pub struct Date {
     day: u32,
 }
 
-/// Why a date is refused.
+/// Why a date is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DateError {
     /// Not of the form YYYY-MM-DD.
@@ -31,7 +31,11 @@ pub enum DateError {
     #[error("{0} does not exist: {1}")]
     Missing(String, String),
     /// Outside [`YEARS`].
-    #[error("the year {0} is outside {first}..={last}, the years that the sun's position is known for", first = YEARS[0], last = YEARS[1])]
+    #[error(
+        "the year {0} is outside {first}..={last}, the years that the sun's position is known for",
+        first = YEARS[0],
+        last = YEARS[1]
+    )]
     Year(i32),
 }
 
@@ -121,7 +125,7 @@ impl FromStr for Date {
     }
 }
 
-/// `YYYY-MM-DDTHH:MM:SS` at `minutes` after midnight of `date`, rounded to the second, on whichever day that falls.
+/// `YYYY-MM-DDTHH:MM:SS` at `minutes` after midnight of `date`, rounded to the second. It may be on another day.
 pub fn date_time_text(date: Date, minutes: f64) -> String {
     let seconds = (minutes * 60.0).round() as i64;
     let (year, month, day) = civil(date.day_number().saturating_add(seconds.div_euclid(86_400)));
@@ -129,13 +133,13 @@ pub fn date_time_text(date: Date, minutes: f64) -> String {
     format!("{year:04}-{month:02}-{day:02}T{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
 }
 
-/// `HH:MM` at `minutes` after midnight, rounded to the minute; the day is left out.
+/// `HH:MM` at `minutes` after midnight, rounded to the minute, without the day.
 pub fn clock_text(minutes: f64) -> String {
     let minute = (minutes.round() as i64).rem_euclid(1440);
     format!("{:02}:{:02}", minute / 60, minute % 60)
 }
 
-/// Why a clock time or a window is refused.
+/// Why a clock time or a window is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ClockError {
     /// Not a time of day.
@@ -160,8 +164,8 @@ pub fn parse_clock(text: &str) -> Result<f64, ClockError> {
     minutes().map(f64::from).ok_or_else(|| ClockError::Time(text.to_owned()))
 }
 
-/// Start and end of `HH:MM-HH:MM` in minutes after midnight; an end at or before the start lies on the next day, which
-/// [`super::DayRequest::window`] understands.
+/// Start and end of `HH:MM-HH:MM` in minutes after midnight. An end at or before the start is on the next day, as in
+/// [`super::DayRequest::window`].
 pub fn parse_window(text: &str) -> Result<[f64; 2], ClockError> {
     let (start, end) = text.split_once('-').ok_or_else(|| ClockError::Window(text.to_owned()))?;
     Ok([parse_clock(start)?, parse_clock(end)?])

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Where north and east lie in the scene. +Y is up; north is -Z and east +X, turned clockwise seen from above.
+/// North and east in the scene. +Y is up. Without rotation, north is -Z and east is +X.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
     /// Unit vector, horizontal, world space.
@@ -12,13 +12,14 @@ pub struct Compass {
 }
 
 impl Compass {
-    /// A compass whose north is turned by `north_deg` from -Z towards +X: at 90, north is +X and east +Z.
+    /// A compass with north turned by `north_deg` from -Z towards +X (clockwise from above): at 90, north is +X and
+    /// east +Z.
     pub fn new(north_deg: f64) -> Self {
         let (sin, cos) = north_deg.to_radians().sin_cos();
         Self { north: DVec3::new(sin, 0.0, -cos), east: DVec3::new(cos, 0.0, sin) }
     }
 
-    /// Unit direction at an azimuth (from north, clockwise towards east) and an elevation above the horizon.
+    /// Unit direction at an azimuth (degrees from north towards east) and an elevation (degrees above the horizon).
     pub fn direction(&self, azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
         let (sin_azimuth, cos_azimuth) = azimuth_deg.to_radians().sin_cos();
         let (sin_elevation, cos_elevation) = elevation_deg.to_radians().sin_cos();

@@ -1,16 +1,19 @@
 //! A real day at a real place as a sun path.
 //!
-//! Theory: which daylight is a date's? The one around the sun's upper transit nearest to local noon: it may set after
-//! local midnight (high latitudes, clocks far from the sun's own), and belongs to the date all the same. Near the poles
-//! the sun may stay up around that transit for a whole turn (polar day: the path is then the date's 24 hours from local
-//! midnight), may not be up at all (polar night), or may cross the horizon just once (where a polar day begins or ends):
-//! daylight is cut twelve hours before and after the transit. At a pole the sun may be down at the transit and up later
-//! that day; then the longest daylight within those 24 hours is the date's.
+//! Theory: a date's daylight is the one around the sun's upper transit nearest to local noon. It may end after local
+//! midnight (at high latitudes, or if clocks are far from solar time). Near the poles there are more cases:
 //!
-//! Practice: t runs linearly with clock time, and with it, to well under the fit's error, with the hour angle. Sunrise
-//! and sunset are the moments when the *centre* of the sun's disc is on the *geometric* horizon. There is no refraction:
-//! in air the sun appears some 0.6 degrees higher there, so almanacs, which also wait for the disc's upper edge, print a
-//! day that is 7 minutes longer at mid latitudes.
+//! * Polar day: the sun stays up for a whole turn around the transit. The path is the date's 24 hours from local
+//!   midnight.
+//! * Polar night: the sun is not up at all. There is no path.
+//! * Start or end of a polar day: the sun crosses the horizon once. Daylight is cut twelve hours from the transit.
+//! * At a pole the sun may be down at the transit and up later that day: the longest daylight within those 24 hours
+//!   counts.
+//!
+//! Practice: t is linear in clock time and, to well under the fit's error, in the hour angle. Sunrise and sunset are
+//! the moments when the *centre* of the sun's disc is on the *geometric* horizon, without refraction. In air the sun
+//! appears about 0.6 degrees higher there, and almanacs use the disc's upper edge, so their days are 7 minutes longer
+//! at mid latitudes.
 
 use super::SUN_ANGULAR_RADIUS_DEG;
 use super::clock::{DAY_MIN, Date, DateError, clock_text};
@@ -19,15 +22,15 @@ use super::ephemeris::{Ephemeris, EphemerisError};
 use super::fit::{EphemerisSample, fit};
 use super::path::{Day, PathError, SunPath};
 
-/// One arc more is taken only where the path would stray from the ephemeris by more than this, in degrees. Each arc
-/// costs a query of the scene for every texel, and 0.01 degrees are 2.4 seconds of sun.
+/// Largest error of the path against the ephemeris, in degrees, that needs no further arc. Each arc costs a query of
+/// the scene for every texel; 0.01 degrees are 2.4 seconds of the sun's motion.
 pub const FIT_ENOUGH_DEG: f64 = 0.01;
 
-/// Shortest path, in minutes: a second, so that ascending times stay apart whatever is computed from them. Shorter
-/// daylight is polar night.
+/// Shortest path, in minutes: one second, so that ascending times stay distinct in all computations. Shorter daylight
+/// counts as polar night.
 const SHORTEST_MIN: f64 = 1.0 / 60.0;
 
-/// Which day, where.
+/// A day at a place, for which a sun path is wanted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DayRequest {
     /// Degrees north, in -90..=90.
@@ -37,38 +40,38 @@ pub struct DayRequest {
     /// The local date.
     pub date: Date,
     /// Hours that local clocks are ahead of UTC, in -12..=14, fractions allowed (Nepal: 5.75). `None`: the whole hour
-    /// nearest to the sun's own time, `longitude / 15`. There is no summer time unless it is given here.
+    /// nearest to solar time, `longitude / 15`. Summer time must be included here.
     pub utc_offset_h: Option<f64>,
     /// Degrees that the scene's north is turned from -Z towards +X (clockwise seen from above).
     pub north_deg: f64,
-    /// Start and end of the path in minutes of local clock time, each in 0..=1440; an end at or before the start lies on
+    /// Start and end of the path in minutes of local clock time, each in 0..=1440. An end at or before the start is on
     /// the next day. `None`: from sunrise to sunset.
     pub window: Option<[f64; 2]>,
 }
 
-/// What a day gives.
+/// The result of [`day`].
 #[derive(Debug, Clone, PartialEq)]
 #[allow(clippy::large_enum_variant)]
 pub enum DayOutcome {
     /// The sun's path.
     Path(SunPath),
-    /// The sun does not rise (polar night). No failure: there are no intervals to bake, but ambient occlusion bakes.
+    /// The sun does not rise (polar night). This is not an error: ambient occlusion can still be baked.
     NoSun {
-        /// Highest elevation of the sun's centre within twelve hours of its transit, in degrees; not positive, but for
+        /// Highest elevation of the sun's centre within twelve hours of its transit, in degrees. Not positive, up to
         /// rounding.
         highest_elevation_deg: f64,
-        /// When that is, in minutes after local midnight.
+        /// Time of that elevation, in minutes after local midnight.
         highest_min: f64,
     },
 }
 
-/// Where the sun stands if nothing says: degrees north and east.
+/// Default place: degrees north and east.
 const DEFAULT_PLACE_DEG: [f64; 2] = [40.0, 0.0];
-/// The day if none is given: the northern summer solstice.
+/// Default date: the northern summer solstice.
 const DEFAULT_DATE: (i32, u32, u32) = (2026, 6, 21);
 
 impl DayRequest {
-    /// From sunrise to sunset at a place, on a date; or else at 40 degrees north, on 2026-06-21.
+    /// From sunrise to sunset. Default place: 40 degrees north, 0 degrees east; default date: 2026-06-21.
     pub fn new(place_deg: Option<[f64; 2]>, date: Option<Date>) -> Result<Self, DateError> {
         let [latitude_deg, longitude_deg] = place_deg.unwrap_or(DEFAULT_PLACE_DEG);
         let (year, month, day) = DEFAULT_DATE;
@@ -77,7 +80,7 @@ impl DayRequest {
     }
 }
 
-/// A place from text: degrees north and east, as `48.2,16.4`.
+/// Parses a place: degrees north and east, as `48.2,16.4`.
 pub fn parse_place(text: &str) -> Result<[f64; 2], String> {
     let wrong = || format!("`{text}` is not a place: give degrees north and east, as 48.2,16.4");
     let (latitude, longitude) = text.split_once(',').ok_or_else(wrong)?;
@@ -85,7 +88,7 @@ pub fn parse_place(text: &str) -> Result<[f64; 2], String> {
     Ok([number(latitude)?, number(longitude)?])
 }
 
-/// Why a request gives no day.
+/// Why a request is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DayError {
     /// Not a latitude.
@@ -102,12 +105,13 @@ pub enum DayError {
     North(f64),
     /// Not clock times.
     #[error(
-        "no window runs from minute {0} to minute {1}: give minutes of local time in 0..=1440; it lasts a second at least"
+        "no window runs from minute {0} to minute {1}: give minutes of local time in 0..=1440, at least a second apart"
     )]
     Window(f64, f64),
     /// The sun is down all through the window.
     #[error(
-        "the sun stays below the horizon from {window} on {date}: it is up {sun_up} there; choose a window that meets that"
+        "the sun stays below the horizon from {window} on {date}: it is up {sun_up} there; choose a window that meets \
+         that"
     )]
     DarkWindow {
         /// `HH:MM to HH:MM`.
@@ -146,7 +150,7 @@ pub fn day(request: &DayRequest) -> Result<DayOutcome, DayError> {
     Ok(DayOutcome::Path(path_over(request, utc_offset_h, &ephemeris, window)?))
 }
 
-/// On a date without daylight of its own, a window across midnight may still hold the next day's sun.
+/// On a date without daylight, a window across midnight may still contain the next day's.
 fn no_sun_unless_in_window(
     request: &DayRequest,
     utc_offset_h: f64,
@@ -162,7 +166,7 @@ fn no_sun_unless_in_window(
     Ok(DayOutcome::NoSun { highest_elevation_deg, highest_min })
 }
 
-/// Checks every number of a request; gives the UTC offset.
+/// Checks every number of a request. Returns the UTC offset in hours.
 fn check(request: &DayRequest) -> Result<f64, DayError> {
     if !(-90.0..=90.0).contains(&request.latitude_deg) {
         return Err(DayError::Latitude(request.latitude_deg));
@@ -186,7 +190,7 @@ fn check(request: &DayRequest) -> Result<f64, DayError> {
     Ok(utc_offset_h)
 }
 
-/// A window whose end follows its start.
+/// The window with its end after its start: an end on the next day gets 1440 minutes added.
 fn unrolled([start, end]: [f64; 2]) -> [f64; 2] {
     [start, if end <= start { end + DAY_MIN } else { end }]
 }
@@ -195,7 +199,7 @@ fn length([start, end]: &[f64; 2]) -> f64 {
     end - start
 }
 
-/// Sunrise and sunset of the date in minutes after local midnight, by the rules on top of this file.
+/// Sunrise and sunset of the date in minutes after local midnight, by the rules in this file's header.
 fn daylight_of_date(ephemeris: &Ephemeris) -> Result<Option<[f64; 2]>, EphemerisError> {
     let transit = ephemeris.transit_min()?;
     let around = [transit - 0.5 * DAY_MIN, transit + 0.5 * DAY_MIN];
@@ -209,7 +213,7 @@ fn daylight_of_date(ephemeris: &Ephemeris) -> Result<Option<[f64; 2]>, Ephemeris
     Ok(at_transit.or(longest).copied())
 }
 
-/// The path from one minute to another.
+/// The path from `start` to `end`, in minutes after local midnight.
 fn path_over(
     request: &DayRequest,
     utc_offset_h: f64,
@@ -217,7 +221,7 @@ fn path_over(
     [start, end]: [f64; 2],
 ) -> Result<SunPath, DayError> {
     let duration_min = end - start;
-    // At most a minute apart, and joints at halves and thirds fall on a sample.
+    // At most a minute apart, and a multiple of six, so that halves and thirds of the path are samples.
     let steps = 6 * ((duration_min / 6.0).ceil() as u32).max(4);
     let sample = |i: u32| -> Result<EphemerisSample, EphemerisError> {
         let t = f64::from(i) / f64::from(steps);

@@ -1,8 +1,8 @@
-//! The sun over one place on one day, from the ephemeris.
+//! The sun's position at one place around one day.
 //!
-//! Only this file names `solar-positioning` (NREL's Solar Position Algorithm: I. Reda and A. Andreas, 2004). Positions
-//! are topocentric at sea level (parallax included), without refraction. Times are minutes after local midnight, and
-//! any minute may be asked for, also of the days around.
+//! Only this file uses `solar-positioning` (NREL's Solar Position Algorithm: I. Reda and A. Andreas, 2004). Positions
+//! are topocentric at sea level (with parallax), without refraction. Times are minutes after local midnight and may lie
+//! on the days before and after.
 
 use glam::DVec3;
 use solar_positioning::time::JulianDate;
@@ -14,7 +14,7 @@ use super::compass::Compass;
 /// Julian date of 1970-01-01T00:00.
 const UNIX_EPOCH_JD: f64 = 2_440_587.5;
 
-/// What the ephemeris refused; its ranges are checked before, so this is not expected.
+/// An error of the ephemeris. Its ranges are checked before, so none is expected.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("the ephemeris gives no position of the sun: {0}")]
 pub struct EphemerisError(String);
@@ -25,7 +25,7 @@ impl From<Error> for EphemerisError {
     }
 }
 
-/// A place, a day and how the scene lies there.
+/// The ephemeris for a place, a day and the scene's orientation.
 pub(super) struct Ephemeris {
     location: Location,
     compass: Compass,
@@ -64,18 +64,18 @@ impl Ephemeris {
         Ok(self.compass.direction(azimuth_deg, elevation_deg))
     }
 
-    /// The axis that the sky turns about, right-handed (the south celestial pole), and where the meridian crosses the
-    /// celestial equator: hour angle 0 of a true sun.
+    /// The sky's right-handed axis of rotation (the south celestial pole), and the direction where the meridian crosses
+    /// the celestial equator (hour angle 0).
     pub fn axis_and_zero(&self) -> [DVec3; 2] {
         let (sin, cos) = self.location.latitude.to_radians().sin_cos();
         let north = self.compass.north;
         [-(north * cos + DVec3::Y * sin), DVec3::Y * cos - north * sin]
     }
 
-    /// The minute of the upper transit that is nearest to local noon. Clocks far from the sun's own move it away from
-    /// noon, by twelve hours at most.
+    /// The minute of the upper transit nearest to local noon. It is up to twelve hours from noon if clocks are far from
+    /// solar time.
     pub fn transit_min(&self) -> Result<f64, EphemerisError> {
-        // Transits are a day and up to half a minute apart, so a day and twelve minutes hold one or two.
+        // Transits are a day and up to half a minute apart, so a day and twelve minutes contain one or two.
         let [from, to] = [-6.0, DAY_MIN + 6.0];
         let noon = 0.5 * DAY_MIN;
         let mut nearest: Option<f64> = None;
@@ -99,7 +99,7 @@ impl Ephemeris {
         Ok(transit.map(|jd| self.minute(jd)))
     }
 
-    /// When the sun's centre is above the geometric horizon between two minutes: ascending, disjoint.
+    /// Intervals, in minutes, in which the sun's centre is above the geometric horizon: ascending, disjoint.
     pub fn daylight(&self, [from, to]: [f64; 2]) -> Result<Vec<[f64; 2]>, EphemerisError> {
         let [start, end] = [self.jd(from), self.jd(to)];
         let horizon = Horizon::Custom(0.0);
@@ -126,7 +126,7 @@ impl Ephemeris {
         Ok(daylight)
     }
 
-    /// The minute between two at which the sun stands highest, and its elevation in degrees.
+    /// The minute, between two given ones, at which the sun is highest, and its elevation in degrees.
     pub fn highest(&self, [from, to]: [f64; 2]) -> Result<[f64; 2], EphemerisError> {
         const COARSE: u32 = 96;
         let step = (to - from) / f64::from(COARSE);
@@ -134,7 +134,7 @@ impl Ephemeris {
         for i in 1..=COARSE {
             best = self.higher(best, from + step * f64::from(i))?;
         }
-        // Around the best, the elevation has one peak: close in on it by halves.
+        // The elevation has one peak near the best sample: search it with halved steps.
         let mut reach = 0.5 * step;
         while reach > 0.01 {
             let middle = best[0];

@@ -1,17 +1,17 @@
 //! Fits arcs of constant declination to an ephemeris.
 //!
-//! Theory: in a day the sun turns once about the celestial pole while its declination drifts, by up to 0.4 degrees at an
-//! equinox. A cone about the pole cannot follow; a cone about an axis tilted by a few hundredths of a degree follows the
-//! part of the drift that goes with the sine of the hour angle, which on half a turn leaves 0.01 degrees. What is left
-//! falls with the cube of the arc's length, so halves and thirds of the day do the rest.
+//! Theory: in a day the sun turns once about the celestial pole while its declination drifts, by up to 0.4 degrees at
+//! an equinox. A cone about the pole does not fit this. A cone about an axis tilted by a few hundredths of a degree
+//! fits the part of the drift that is proportional to the sine of the hour angle, which leaves an error of 0.01 degrees
+//! over half a turn. The remaining error falls with the cube of the arc's length, so two or three arcs a day suffice.
 //!
-//! Practice: write the sample at moment `s` as hour angle `H` and declination `D` in the arc's own frame (x = zero,
-//! z = axis). Turning the frame by the small vector `(p, q, 0)` changes them to
-//! `D + q cos H - p sin H` and `H + tan D (p cos H + q sin H)`. They should be `d` and `h + r s`. That is linear in
-//! `p, q, d, h, r`; it is solved by least squares and repeated in the turned frame until nothing turns any more (three
-//! times). Weights `1 / sqrt(1 - u^2)` (`u` from -1 to 1 along the arc) press on the ends, as Chebyshev's points do:
-//! the worst error comes close to the smallest possible. So that neighbouring arcs meet, each is fitted a second time
-//! with its ends pinned halfway between where the two ended.
+//! Practice: write the sample at moment `s` as hour angle `H` and declination `D` in the arc's own frame (x = zero, z =
+//! axis). Turning the frame by the small vector `(p, q, 0)` changes them to `D + q cos H - p sin H` and `H + tan D (p
+//! cos H + q sin H)`. They should be `d` and `h + r s`. That is linear in `p, q, d, h, r`; it is solved by least
+//! squares and repeated in the turned frame until it converges (three times). Weights `1 / sqrt(1 - u^2)` (`u` from -1
+//! to 1 along the arc) emphasise the ends, like Chebyshev points: the largest error is close to the smallest possible.
+//! To make neighbouring arcs meet, each is fitted a second time with its ends pinned halfway between the two arcs'
+//! ends.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,38 +22,38 @@ use super::arc::SunArc;
 /// Parameters of one arc's linear fit: `p, q, d, h, r` of the theory above.
 const UNKNOWNS: usize = 5;
 
-/// How much a tilt must help before it is believed, for windows so short that an axis cannot be told from them: this
-/// many square radians of error a sample and a square radian of tilt. Moves a good fit by less than 0.0001 degrees.
+/// Regularisation of the tilt, for windows too short to determine an axis: square radians of error per sample and per
+/// square radian of tilt. Changes a well-determined fit by less than 0.0001 degrees.
 const TILT_DAMPING: f64 = 1e-7;
 
-/// Weight of a pinned end, against that of all samples of the arc together.
+/// Weight of a pinned end, relative to all samples of the arc together.
 const PIN_WEIGHT: f64 = 1e4;
 
-/// Lowest height of a unit direction that counts as above the horizon: a little under it, so that sunrise and sunset
-/// themselves count however they are rounded.
+/// Least y of a unit direction that counts as above the horizon: slightly below 0, so that sunrise and sunset
+/// themselves count despite rounding.
 const UP_FROM: f64 = -1e-4;
 
-/// Where the ephemeris has the sun at one moment.
+/// The sun's direction at one moment, from the ephemeris.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EphemerisSample {
     /// Path time.
     pub t: f64,
-    /// Unit, world space.
+    /// Towards the sun, unit length, world space.
     pub direction: DVec3,
 }
 
-/// Arcs, and how far they stray.
+/// Fitted arcs and their error.
 pub(super) struct Fit {
-    /// One to three.
+    /// One to three arcs.
     pub arcs: Vec<SunArc>,
-    /// Largest angle to a sample above the horizon, in degrees.
+    /// Largest angle to any sample above the horizon, in degrees.
     pub error_deg: f64,
 }
 
 /// Fits as few arcs as stay within `enough_deg` of the samples above the horizon, three at most.
 ///
-/// Samples are evenly spaced from t = 0 to t = 1, in a number of steps that six divides. `axis_and_zero` is the frame to
-/// start from, within a few degrees of right.
+/// Samples are evenly spaced from t = 0 to t = 1; the number of steps is a multiple of six. `axis_and_zero` is the
+/// initial frame, accurate to a few degrees.
 pub(super) fn fit(samples: &[EphemerisSample], axis_and_zero: [DVec3; 2], enough_deg: f64) -> Fit {
     let mut best = fit_equal_arcs(samples, axis_and_zero, 1);
     for count in 2..=3 {
@@ -95,7 +95,7 @@ fn worst_error_rad(arc: &SunArc, samples: &[EphemerisSample]) -> f64 {
     .fold(0.0, f64::max)
 }
 
-/// Fits one arc. Where an end is pinned, the arc passes through that direction instead of the sample there.
+/// Fits one arc. A pinned end replaces the sample there.
 fn fit_arc(samples: &[EphemerisSample], [mut axis, mut zero]: [DVec3; 2], pins: [Option<DVec3>; 2]) -> SunArc {
     let weighted = weigh(samples, pins);
     let mut solution = [0.0; UNKNOWNS];
@@ -111,7 +111,7 @@ fn fit_arc(samples: &[EphemerisSample], [mut axis, mut zero]: [DVec3; 2], pins: 
     SunArc { axis, zero, declination_rad, hour_angle_rad: [middle - 0.5 * rate, middle + 0.5 * rate], t }
 }
 
-/// A direction that an arc should have at `s`, from -0.5 at its start to 0.5 at its end, and how much that matters.
+/// A target direction at `s` (-0.5 at the arc's start, 0.5 at its end) with its weight in the fit.
 struct WeightedDirection {
     s: f64,
     direction: DVec3,
@@ -132,7 +132,7 @@ fn weigh(samples: &[EphemerisSample], pins: [Option<DVec3>; 2]) -> Vec<WeightedD
     samples.iter().enumerate().map(one).collect()
 }
 
-/// One round: `[p, q, d, h, r]`.
+/// One least squares step: `[p, q, d, h, r]`.
 fn solve_linearised(samples: &[WeightedDirection], axis: DVec3, zero: DVec3) -> [f64; UNKNOWNS] {
     let square = axis.cross(zero);
     let mut normal = [[0.0; UNKNOWNS + 1]; UNKNOWNS];

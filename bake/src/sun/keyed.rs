@@ -1,4 +1,4 @@
-//! A sun path from a file of keys: directions at times, joined by great circles.
+//! A sun path from a path file: directions at given times, joined by great circles.
 //!
 //! ```json
 //! { "angular_radius_deg": 0.27, "duration_min": 600,
@@ -7,10 +7,11 @@
 //!             { "t": 1, "azimuth_deg": 270, "elevation_deg": 5 } ] }
 //! ```
 //!
-//! Directions point from the scene to the light: `direction` in world space, any length, or an azimuth from north,
-//! clockwise towards east, with an elevation. Between two keys the light moves at constant speed along the shorter great
-//! circle, an arc of declination zero, so every engine that can bake a day can bake this. `t` runs from 0 to 1; if no
-//! key has one, keys are evenly spaced. Without `duration_min` the path lasts as long as the real sun would take for it.
+//! Directions point from the scene to the light: either `direction` in world space (any length), or an azimuth (from
+//! north towards east) with an elevation. Between two keys the light moves at constant speed along the shorter great
+//! circle, which is an arc of declination zero, so every engine for days can bake it. `t` runs from 0 to 1; if no key
+//! has a `t`, keys are evenly spaced. The default of `duration_min` is the time in which the real sun turns through the
+//! same angle.
 
 use glam::DVec3;
 use serde::Deserialize;
@@ -21,7 +22,7 @@ use super::{Compass, PathError, SUN_ANGULAR_RADIUS_DEG, SunArc, SunPath, duratio
 /// Smallest angle between neighbouring keys, and between a key and the opposite of its neighbour, in degrees.
 const MIN_ANGLE_DEG: f64 = 0.001;
 
-/// Why a file of keys makes no path of a sun.
+/// Why a path file is not a sun path.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum KeyedError {
     /// The keys themselves are wrong.
@@ -40,10 +41,10 @@ pub enum KeyedError {
         /// What it must be.
         bound: &'static str,
     },
-    /// Nothing would ever be lit.
+    /// The light never rises above the horizon.
     #[error("the path stays below the horizon (+Y is up), so nothing would be lit: directions must point to the light")]
     BelowHorizon,
-    /// The arcs make no path.
+    /// The arcs are not a valid path.
     #[error(transparent)]
     Path(#[from] PathError),
 }
@@ -68,7 +69,7 @@ struct SunPathKey {
     position: Option<serde::de::IgnoredAny>,
 }
 
-/// Reads a path of keys. `north_deg` turns azimuths as it turns a day's ([`Compass::new`]); directions are left alone.
+/// Parses a path file. `north_deg` rotates azimuths as in [`Compass::new`]; `direction` keys are not changed.
 pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
     let file: SunPathFile = serde_json::from_str(json).map_err(|error| KeyError::Json(error.to_string()))?;
     if file.positions.is_some() {
@@ -120,7 +121,7 @@ fn directions(keys: &[SunPathKey], compass: &Compass) -> Result<Vec<DVec3>, KeyE
     keys.iter().enumerate().map(one).collect()
 }
 
-/// Great circles from key to key.
+/// Great circle arcs between neighbouring keys.
 fn arcs(directions: &[DVec3], times: &[f64]) -> Result<Vec<SunArc>, KeyError> {
     let one = |(index, pair): (usize, &[DVec3])| {
         let [zero, end] = [pair[0], pair[1]];
@@ -128,10 +129,13 @@ fn arcs(directions: &[DVec3], times: &[f64]) -> Result<Vec<SunArc>, KeyError> {
         let angle = across.length().atan2(zero.dot(end));
         let wrong = |problem: String| Err(KeyError::Pair { index, problem });
         if angle.to_degrees() < MIN_ANGLE_DEG {
-            return wrong("point the same way: a light that stands still has no path; drop one of them".to_owned());
+            let problem = "point in the same direction: a light that does not move has no path; remove one of them";
+            return wrong(problem.to_owned());
         }
         if angle.to_degrees() > 180.0 - MIN_ANGLE_DEG {
-            return wrong("point opposite ways, and every great circle joins those: put a key between them".to_owned());
+            return wrong(
+                "point in opposite directions, which any great circle joins: put a key between them".to_owned(),
+            );
         }
         let axis = across.normalize().reject_from_normalized(zero).normalize();
         let t = [times[index], times[index + 1]];

@@ -1,4 +1,4 @@
-//! What all path files have in common, those of suns and those of lamps: a list of keys, and when each key applies.
+//! Common to the path files of suns and of lamps: a list of keys, and the path time of each key.
 
 /// Most keys that a path may have: each pair costs a query of the scene for every texel.
 pub const MAX_KEYS: usize = 1000;
@@ -9,13 +9,13 @@ const MIN_STEP_T: f64 = 1e-6;
 /// Why the keys of a path file are refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum KeyError {
-    /// Not JSON, or not of this form.
+    /// Not JSON, or unknown or missing fields.
     #[error("the path file is not understood: {0}")]
     Json(String),
     /// Too few or too many keys.
     #[error("the path has {0} keys: give 2 to {MAX_KEYS}")]
     Count(usize),
-    /// A key is wrong in itself.
+    /// A key is invalid.
     #[error("key {index} of the path (counted from 0) {problem}")]
     Key {
         /// Which key.
@@ -23,7 +23,7 @@ pub enum KeyError {
         /// What is wrong, and what to give.
         problem: String,
     },
-    /// A key contradicts the one before it.
+    /// Two neighbouring keys contradict each other.
     #[error("keys {index} and {next} of the path (counted from 0) {problem}", next = .index + 1)]
     Pair {
         /// The first of the two.

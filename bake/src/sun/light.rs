@@ -1,13 +1,12 @@
-//! A scene's own directional light as a sun, where no place is given.
+//! A scene's own directional light as a sun, if no place is given.
 //!
-//! Theory: one direction is a moment, not a path, and from a moment nobody can tell the latitude or the season. The
-//! simplest path that passes through it, treats both of its sides alike and has the light at its best is the great
-//! circle from horizon to horizon with the light's direction highest.
+//! Theory: one direction does not determine a latitude or a season. The simplest symmetric path through it is the great
+//! circle from horizon to horizon with its highest point in the light's direction.
 //!
-//! Practice: the light is at t = 0.5; t = 0 is on the horizon a quarter turn to the left of its azimuth and t = 1 a
-//! quarter turn to the right (seen from the scene: for a light in the south that is east to west, the way of the
-//! northern sun). A light straight overhead has no azimuth and goes from east (+X) to west. Half a turn lasts twelve
-//! hours, as the real sun would take.
+//! Practice: the light is at t = 0.5. At t = 0 the path is on the horizon a quarter turn to the left of the light's
+//! azimuth, at t = 1 a quarter turn to the right. For a light in the south that is from east to west, like the sun on
+//! the northern hemisphere. A light straight overhead goes from east (+X) to west. The path lasts twelve hours, as long
+//! as the real sun needs for half a turn.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -16,25 +15,25 @@ use glam::DVec3;
 use super::duration_min_of_angle;
 use super::{PathError, SunArc, SunPath};
 
-/// Why a light makes no sun.
+/// Why a light cannot be used as a sun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LightError {
-    /// Zero or not finite.
+    /// The direction is zero or not finite.
     #[error("the light's direction {0} is no direction: check its node's matrix")]
     Direction(DVec3),
-    /// Shines upwards or level.
+    /// The light shines upwards or horizontally.
     #[error("the light stands {elevation_deg:.2} degrees above the horizon, so it is no sun: aim it down")]
     BelowHorizon {
-        /// Elevation of the direction towards the light.
+        /// Elevation of the direction towards the light, in degrees.
         elevation_deg: f64,
     },
-    /// The disc is no size.
+    /// The angular radius is out of range.
     #[error(transparent)]
     Path(#[from] PathError),
 }
 
-/// The great circle over a light, as a path. `towards_light` points from the scene to the light, world space, any
-/// length (a glTF light shines along its node's -Z, so that is the node's +Z).
+/// The great circle through a light's direction, as a path. `towards_light` points from the scene to the light, in
+/// world space, with any length. (A glTF light shines along its node's -Z, so this is the node's +Z.)
 pub fn fixed_light(towards_light: DVec3, angular_radius_rad: f64) -> Result<SunPath, LightError> {
     let Some(zero) = towards_light.try_normalize() else {
         return Err(LightError::Direction(towards_light));

@@ -1,12 +1,12 @@
-//! Sun paths: where the sun (or a lamp far away) stands at every moment `t` in [0, 1].
+//! Sun paths: the direction to the sun (or to any distant light) at every path time `t` in [0, 1].
 //!
-//! A path is one or more *arcs* of constant declination (`arc.rs`), each a turn about a fixed axis, so that visibility
-//! along it has closed-form answers. A real day is fitted by one to three arcs (`day.rs`, `fit.rs`); a keyed path is a
-//! chain of great circles, each an arc of declination zero in a frame of its own (`keyed.rs`); a scene that brings only
-//! a directional light gets the great circle over it (`light.rs`).
+//! A path is one or more *arcs* of constant declination (`arc.rs`). Each arc is a rotation about a fixed axis, so
+//! visibility along it has closed-form solutions. A real day is fitted by one to three arcs (`day.rs`, `fit.rs`). A
+//! keyed path is a chain of great circles, each an arc of declination zero in its own frame (`keyed.rs`). A scene's
+//! directional light gets the great circle through its direction (`light.rs`).
 //!
-//! World frame: +Y up, north -Z, east +X, turned by `north_deg` (`compass.rs`). Angles in the code are radians and say
-//! so; at the edges (requests, files, messages) they are degrees and say so.
+//! World frame: +Y up, north -Z, east +X, turned by `north_deg` (`compass.rs`). Angles are radians inside the code and
+//! degrees in requests, files and messages; all names say which.
 
 mod arc;
 mod clock;
@@ -37,7 +37,7 @@ pub use path::{Day, PathError, SunPath};
 /// unit; *Explanatory Supplement to the Astronomical Almanac*).
 pub const SUN_ANGULAR_RADIUS_DEG: f64 = 959.63 / 3600.0;
 
-/// Minutes that the real sun takes for an angle (a turn a day): how long a path lasts that does not say.
+/// Minutes in which the real sun turns through an angle (one turn a day): the default duration of a path.
 fn duration_min_of_angle(angle_rad: f64) -> f64 {
     angle_rad / std::f64::consts::TAU * DAY_MIN
 }

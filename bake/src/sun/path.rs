@@ -1,4 +1,4 @@
-//! The sun path: arcs end to end over `t` in [0, 1], and the day it stands for.
+//! The sun path: consecutive arcs over `t` in [0, 1], and the day that it represents.
 
 use glam::DVec3;
 
@@ -8,16 +8,16 @@ use crate::intervals::Intervals;
 
 /// A sun path over `t` in [0, 1].
 ///
-/// Guarantees, made by [`SunPath::new`]: at least one arc; arcs follow one another without gap or overlap from exactly
-/// t = 0 to exactly t = 1; axes and zeros are unit and orthogonal; every number is finite.
+/// Guarantees, made by [`SunPath::new`]: at least one arc; arcs cover [0, 1] exactly, in order, without gap or overlap;
+/// axes and zeros are unit vectors and orthogonal; every number is finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SunPath {
     arcs: Vec<SunArc>,
     /// Angular radius of the light's disc, in radians; 0 for a point.
     pub angular_radius_rad: f64,
-    /// How many minutes of clock time the path takes, so that errors can be told in minutes.
+    /// Clock time from t = 0 to t = 1, in minutes, so that errors can be given in minutes.
     pub duration_min: f64,
-    /// The day it stands for, where it stands for one.
+    /// The day that the path represents, if it is that of a real day.
     pub day: Option<Day>,
 }
 
@@ -34,19 +34,19 @@ pub struct Day {
     pub utc_offset_h: f64,
     /// Degrees that the scene's north is turned from -Z towards +X (clockwise seen from above).
     pub north_deg: f64,
-    /// Minutes from local midnight of `date` to t = 0; t = 1 is `duration_min` later. May lie outside [0, 1440).
+    /// Minutes from local midnight of `date` to t = 0; t = 1 is `duration_min` later. May be outside [0, 1440).
     pub start_min: f64,
     /// Largest angle between the path and the ephemeris, in degrees, sampled each minute while the sun is up.
     pub ephemeris_error_deg: f64,
 }
 
-/// Why arcs do not make a path.
+/// Why arcs are not a valid path.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PathError {
     /// No arc at all.
     #[error("a sun path needs at least one arc")]
     Empty,
-    /// Something is NaN, not unit, not orthogonal or not ascending.
+    /// A number is NaN or infinite, a vector is not unit or not orthogonal, or times do not ascend.
     #[error("arc {index} of the sun path is malformed: {reason}")]
     Arc {
         /// Which arc.
@@ -54,7 +54,7 @@ pub enum PathError {
         /// What is wrong with it.
         reason: &'static str,
     },
-    /// The disc or the duration is not a size.
+    /// The angular radius or the duration is out of range.
     #[error("the sun path's {what} is {value}: it must be finite and {bound}")]
     Size {
         /// Which number.
@@ -86,7 +86,7 @@ impl SunPath {
         &self.arcs
     }
 
-    /// The path beside this one, nearer to the arcs' axes by `offset_rad`: one lane across the sun's disc, with the same
+    /// A lane across the sun's disc: the parallel path with `offset_rad` added to every arc's declination, and the same
     /// hour angle at every `t`.
     pub fn lane(&self, offset_rad: f64) -> Self {
         let mut lane = self.clone();
@@ -94,7 +94,7 @@ impl SunPath {
         lane
     }
 
-    /// The arc that holds at `t` (clamped to [0, 1]).
+    /// The arc at `t` (clamped to [0, 1]).
     pub fn arc_at(&self, t: f64) -> &SunArc {
         self.arcs.iter().find(|a| t < a.t[1]).unwrap_or(&self.arcs[self.arcs.len() - 1])
     }
@@ -111,34 +111,34 @@ impl SunPath {
         direction.y.atan2(direction.x.hypot(direction.z))
     }
 
-    /// When the sun's centre is not behind the plane across `normal` (any length, world space), in closed form.
+    /// When the sun's centre is not behind the plane with this `normal` (any length, world space), in closed form.
     pub fn above_plane(&self, normal: DVec3) -> Intervals {
         Intervals::from_unsorted(self.arcs.iter().flat_map(|arc| arc.half_space_intervals(normal)).collect())
     }
 
-    /// When the sun's centre is above the horizon of a world whose up is `up`.
+    /// When the sun's centre is above the horizon; `up` is the world's up direction.
     pub fn above_horizon(&self, up: DVec3) -> Intervals {
         self.above_plane(up)
     }
 
-    /// Width of the sun in `t`: the time its disc takes to cross a line that is square to its motion.
+    /// Width of the sun in path time: how long its disc takes to cross a line perpendicular to its motion.
     pub fn width_t(&self, t: f64) -> f64 {
         2.0 * self.angular_radius_rad / self.arc_at(t).speed_rad()
     }
 
-    /// Minutes after local midnight at `t`, for a path that stands for a day.
+    /// Minutes after local midnight at `t`, if the path is that of a day.
     pub fn clock_min(&self, t: f64) -> Option<f64> {
         self.day.as_ref().map(|d| d.start_min + t * self.duration_min)
     }
 
-    /// The `t` at which local clocks show `clock_min` minutes after midnight, of whichever day the path then is in;
-    /// `None` where the path does not pass that time or stands for no day.
+    /// The `t` at which local clocks show `clock_min` minutes after midnight, on whichever day of the path. `None` if
+    /// the path does not include that time or is not that of a day.
     pub fn t_at_clock_min(&self, clock_min: f64) -> Option<f64> {
         let since_start = clock_min - self.day.as_ref()?.start_min;
-        // A whole day that starts and ends at midnight passes it twice: 00:00 is its start and 24:00 its end.
-        let as_asked = since_start / self.duration_min;
+        // A path of 24 hours from midnight includes midnight twice: 00:00 is its start and 24:00 its end.
+        let exact = since_start / self.duration_min;
         let wrapped = since_start.rem_euclid(DAY_MIN) / self.duration_min;
-        [as_asked, wrapped].into_iter().find(|t| (0.0..=1.0).contains(t))
+        [exact, wrapped].into_iter().find(|t| (0.0..=1.0).contains(t))
     }
 
     /// `HH:MM` on local clocks at `t`.
@@ -188,10 +188,10 @@ fn check_arcs(arcs: &[SunArc]) -> Result<(), PathError> {
     Ok(())
 }
 
-/// How far apart, in `t`, an end and the next start may be and still be taken as one moment.
+/// Largest gap, in `t`, between an arc's end and the next arc's start.
 const JOINT_TOLERANCE_T: f64 = 1e-9;
 
-/// Makes neighbouring ends the same number, so that intervals on either side of a joint join.
+/// Makes the ends of neighbouring arcs equal, so that intervals on both sides of a joint can be merged.
 fn close_gaps(arcs: &mut [SunArc]) {
     let mut start = 0.0;
     for arc in arcs.iter_mut() {

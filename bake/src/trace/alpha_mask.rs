@@ -1,27 +1,27 @@
-//! Which points of which triangles are holes.
+//! Alpha masks of triangles: which of their points are solid.
 
 use crate::scene::alpha::{blend, blend_alphas, image_uvs, nearest_texel, vertex_alphas, wrap_texel};
 use crate::scene::{Alpha, Geometry, Scene, Wrap};
 use glam::{DVec2, Vec2};
 
-/// Alpha masks of the triangles that have holes. Empty, and never asked, in a scene without any.
+/// Alpha masks of all triangles that have one. Empty in a scene without alpha masks.
 #[derive(Default)]
 pub(super) struct AlphaMasks {
-    /// In the hierarchy's order: index in `triangles`, or [`AlphaMasks::NONE`]. Empty if no triangle has holes.
+    /// In the hierarchy's order: index in `triangles`, or [`AlphaMasks::NONE`]. Empty if no triangle has a mask.
     of_triangle: Vec<u32>,
     triangles: Vec<TriangleMask>,
-    masks: Vec<AlphaTexture>,
+    textures: Vec<AlphaTexture>,
 }
 
-/// A triangle with holes.
+/// A triangle with an alpha mask.
 struct TriangleMask {
     image_uvs: [Vec2; 3],
     /// Vertex alpha times the material's factor.
     alphas: [f32; 3],
     cutoff: f32,
-    /// Whether the vertices have no alpha of their own.
+    /// Whether vertices have no alpha, so that all corners have the material's.
     is_plain: bool,
-    /// Index in [`AlphaMasks::masks`], if the material has a texture.
+    /// Index in [`AlphaMasks::textures`], if the material has a texture.
     mask: Option<u32>,
 }
 
@@ -30,20 +30,21 @@ struct AlphaTexture {
     size: [u32; 2],
     wrap: [Wrap; 2],
     alpha: Vec<u8>,
-    /// For each texel of a material without corner alphas, the largest square of equal texels that starts at it and lies
-    /// towards each corner of the image: its side in texels, by [`quadrant`], and whether it is solid ([`SOLID`]).
+    /// For each texel, the sides in texels of the largest uniform squares that start at it towards each corner of the
+    /// image (by [`quadrant`]), and whether they are solid ([`SOLID`]). Valid for triangles with the material's own
+    /// alpha.
     squares: Vec<[u8; 4]>,
 }
 
-/// A triangle with holes, for engines that follow the sun across it.
+/// A triangle with an alpha mask, as closed-form engines need it.
 pub(crate) struct MaskedTriangle<'a> {
-    /// Texture coordinates of the corners, in texels.
+    /// Texture coordinates of the corners, in texels of the image.
     pub texel_uvs: [DVec2; 3],
-    /// Alpha at the corners, without the texture's.
+    /// Alpha at the corners without the texture's, 0 to 1.
     pub alphas: [f64; 3],
-    /// Least alpha that is solid.
+    /// Least alpha of a solid point, 0 to 1.
     pub cutoff: f64,
-    /// Whether the corners' alphas are the material's own, for which [`AlphaTexture::squares`] were made.
+    /// Whether the corners have the material's own alpha, so that [`AlphaTexture::squares`] are valid.
     is_plain: bool,
     mask: Option<&'a AlphaTexture>,
 }
@@ -55,12 +56,12 @@ impl MaskedTriangle<'_> {
         Self { texel_uvs: [DVec2::ZERO; 3], alphas, cutoff, is_plain: false, mask: None }
     }
 
-    /// Whether alpha changes from texel to texel.
+    /// Whether the material has a texture.
     pub fn has_texture(&self) -> bool {
         self.mask.is_some()
     }
 
-    /// Alpha of the texture in a texel, wherever it lies.
+    /// The texture's alpha in a texel, 0 to 1; any index is wrapped into the image.
     pub fn alpha_of(&self, [column, row]: [i64; 2]) -> f64 {
         let Some(mask) = self.mask else { return 1.0 };
         let x = wrap_texel(column, mask.size[0], mask.wrap[0]);
@@ -68,29 +69,29 @@ impl MaskedTriangle<'_> {
         f64::from(mask.alpha[y as usize * mask.size[0] as usize + x as usize]) / 255.0
     }
 
-    /// A square of texels around one that are all solid or all clear: its borders `[[left, right], [top, bottom]]` and
-    /// which it is. Where alpha may pass the cutoff within the texel there is no answer to that.
+    /// A uniform square of texels around one: its borders `[[left, right], [top, bottom]]`, and whether it is solid.
+    /// `None` if alpha may cross the cutoff within the texel.
     #[inline]
     pub fn uniform(&self, texel: [i64; 2]) -> ([[i64; 2]; 2], Option<bool>) {
-        let (sides, verdict) = self.squares(texel);
+        let (sides, solidity) = self.squares(texel);
         let reach = sides.map(|side| i64::from(side & !SOLID)).into_iter().fold(i64::MAX, i64::min) - 1;
-        (texel.map(|at| [at - reach, at + 1 + reach]), verdict)
+        (texel.map(|at| [at - reach, at + 1 + reach]), solidity)
     }
 
-    /// The same for a square that starts at the texel and lies where each coordinate grows, or falls.
+    /// The same for a square that starts at the texel and extends to where each coordinate grows (or falls).
     #[inline]
     pub fn uniform_ahead(&self, texel: [i64; 2], grows: [bool; 2]) -> ([[i64; 2]; 2], Option<bool>) {
-        let (sides, verdict) = self.squares(texel);
+        let (sides, solidity) = self.squares(texel);
         let side = i64::from(sides[quadrant(grows)] & !SOLID);
         let ahead = |k: usize| if grows[k] { [texel[k], texel[k] + side] } else { [texel[k] + 1 - side, texel[k] + 1] };
-        ([ahead(0), ahead(1)], verdict)
+        ([ahead(0), ahead(1)], solidity)
     }
 
     #[inline]
     fn squares(&self, texel: [i64; 2]) -> ([u8; 4], Option<bool>) {
-        let Some(mask) = self.mask else { return ([1; 4], self.verdict(1.0)) };
-        if !self.is_plain || !mask.is_unturned(texel) {
-            return ([1; 4], self.verdict(self.alpha_of(texel)));
+        let Some(mask) = self.mask else { return ([1; 4], self.solidity(1.0)) };
+        if !self.is_plain || !mask.has_image_order(texel) {
+            return ([1; 4], self.solidity(self.alpha_of(texel)));
         }
         let x = wrap_texel(texel[0], mask.size[0], mask.wrap[0]);
         let y = wrap_texel(texel[1], mask.size[1], mask.wrap[1]);
@@ -98,23 +99,24 @@ impl MaskedTriangle<'_> {
         (sides, Some(sides[0] & SOLID != 0))
     }
 
-    /// Whether all of the triangle is solid, or clear, where the texture's alpha is this.
-    fn verdict(&self, alpha: f64) -> Option<bool> {
+    /// Where the texture has this alpha: whether the whole triangle is solid; `None` if it is so in part.
+    fn solidity(&self, alpha: f64) -> Option<bool> {
         let solid = self.alphas.map(|own| is_solid(own as f32, alpha as f32, self.cutoff as f32));
         solid.iter().all(|&corner| corner == solid[0]).then_some(solid[0])
     }
 }
 
-/// Whether alpha reaches the cutoff. In `f32` wherever it is asked, since cutoffs such as 0.2 are alphas in `f32` alone.
+/// Whether alpha reaches the cutoff. Always in `f32`: a cutoff such as 0.2 equals the alpha 51/255 in `f32` but not in
+/// `f64`.
 #[inline]
 fn is_solid(own: f32, texel: f32, cutoff: f32) -> bool {
     own * texel >= cutoff
 }
 
-/// Bit of [`AlphaTexture::squares`] that says that a texel is solid.
+/// Bit of [`AlphaTexture::squares`] that marks solid texels.
 const SOLID: u8 = 0x80;
 
-/// Which of four squares lies where coordinates grow or fall.
+/// Index of the square that extends to where each coordinate grows (or falls).
 #[inline]
 fn quadrant(grows: [bool; 2]) -> usize {
     usize::from(grows[0]) + 2 * usize::from(grows[1])
@@ -137,13 +139,13 @@ impl AlphaMasks {
             let texture = material.base_color_texture;
             let mask = texture.map(|texture| {
                 *mask_of_material[mesh.material].get_or_insert_with(|| {
-                    alpha_mask.masks.push(AlphaTexture::new(
+                    alpha_mask.textures.push(AlphaTexture::new(
                         &scene.images[texture.image],
                         texture.wrap,
                         material.base_color.w,
                         cutoff,
                     ));
-                    alpha_mask.masks.len() as u32 - 1
+                    alpha_mask.textures.len() as u32 - 1
                 })
             });
             alpha_mask.of_triangle[id] = alpha_mask.triangles.len() as u32;
@@ -163,11 +165,11 @@ impl AlphaMasks {
         self.of_triangle.get(id).is_some_and(|&cut| cut != Self::NONE)
     }
 
-    /// What a closed-form engine needs of a triangle with holes.
+    /// A triangle's mask for closed-form engines, if it has one.
     pub fn view(&self, id: usize) -> Option<MaskedTriangle<'_>> {
         let &cut = self.of_triangle.get(id)?;
         let triangle = self.triangles.get(cut as usize)?;
-        let mask = triangle.mask.map(|mask| &self.masks[mask as usize]);
+        let mask = triangle.mask.map(|mask| &self.textures[mask as usize]);
         let size = mask.map_or(DVec2::ONE, |mask| DVec2::new(f64::from(mask.size[0]), f64::from(mask.size[1])));
         Some(MaskedTriangle {
             texel_uvs: triangle.image_uvs.map(|uv| uv.as_dvec2() * size),
@@ -189,21 +191,21 @@ impl AlphaMasks {
     fn is_solid_at(&self, triangle: &TriangleMask, barycentric: [f32; 2]) -> bool {
         let texel = triangle
             .mask
-            .map_or(1.0, |mask| self.masks[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
+            .map_or(1.0, |mask| self.textures[mask as usize].alpha_at(blend(triangle.image_uvs, barycentric)));
         is_solid(blend_alphas(triangle.alphas, barycentric), texel, triangle.cutoff)
     }
 }
 
-/// For each texel, whether it is solid, and the sides of the largest squares within the image that start at it, go towards
-/// each of the four corners, and hold nothing that differs. A square is one larger than the least of those that start at its
-/// three neighbours, if they are like it: one sweep over the image for each corner.
+/// For each texel, whether it is solid, and the sides of the largest uniform squares within the image that start at it
+/// and extend towards each of the four corners. A square's side is one more than the smallest of those that start at
+/// the three neighbours in its direction, if these are like the texel: one sweep over the image for each corner.
 fn squares(solid: &[bool], [width, height]: [usize; 2]) -> Vec<[u8; 4]> {
     let mut squares: Vec<[u8; 4]> = solid.iter().map(|&solid| [if solid { SOLID } else { 0 }; 4]).collect();
     for grows in [[false, false], [true, false], [false, true], [true, true]] {
         let q = quadrant(grows);
         for row in 0..height {
             for column in 0..width {
-                // From the corner that the squares go towards.
+                // The sweep starts at the corner that the squares extend to.
                 let x = if grows[0] { width - 1 - column } else { column };
                 let y = if grows[1] { height - 1 - row } else { row };
                 let here = y * width + x;
@@ -236,7 +238,7 @@ fn squares(solid: &[bool], [width, height]: [usize; 2]) -> Vec<[u8; 4]> {
 }
 
 impl AlphaTexture {
-    /// For a material's factor of alpha and its cutoff.
+    /// For a material with this alpha factor and cutoff.
     fn new(image: &crate::scene::Image, wrap: [Wrap; 2], factor: f32, cutoff: f32) -> Self {
         let alpha: Vec<u8> = image.rgba.iter().map(|texel| texel[3]).collect();
         let size = [image.width, image.height];
@@ -245,8 +247,9 @@ impl AlphaTexture {
         Self { size, wrap, alpha, squares }
     }
 
-    /// Whether texels run the same way around a texel as in the image itself, so that squares may be used.
-    fn is_unturned(&self, texel: [i64; 2]) -> bool {
+    /// Whether the texels around this one have the image's own order (not mirrored or clamped), so that squares are
+    /// valid.
+    fn has_image_order(&self, texel: [i64; 2]) -> bool {
         [0, 1].iter().all(|&k| {
             let size = i64::from(self.size[k]);
             match self.wrap[k] {
@@ -268,7 +271,7 @@ mod tests {
     use super::*;
     use crate::testing::{SceneBuilder, pseudo_random};
 
-    /// Alphas that are just the cutoff are solid, as a ray finds them: 51 / 255 is 0.2 in `f32`, and less in `f64`.
+    /// Alpha equal to the cutoff is solid, as for rays: 51 / 255 equals 0.2 in `f32`, but is less in `f64`.
     #[test]
     fn an_alpha_at_the_cutoff_is_solid() {
         for (alpha, cutoff) in [(51, 0.2), (102, 0.4), (153, 0.6), (204, 0.8)] {

@@ -1,26 +1,27 @@
-//! A sixteen-wide hierarchy: sixteen boxes a node, sixteen triangles a leaf, each number of all sixteen in one vector.
+//! A 16-wide BVH: sixteen boxes per node, sixteen triangles per leaf, stored as structures of arrays for SIMD.
 //!
-//! Made from a binary hierarchy by opening, for each node, the largest of its descendants until there are sixteen (the
-//! usual collapse; Wald, Benthin and Boulos, "Getting rid of packets", 2008). What holds no more triangles than a leaf may is
-//! not opened. Boxes are held as centres and half sizes, since those turn into another frame at the cost of two products of
-//! a matrix. Leaves hold corners, rounded to `f32`: they tell which triangles are worth solving far better than boxes do.
+//! Built by collapsing a binary hierarchy: each node is replaced by its descendants, opening the largest first, until
+//! there are sixteen (Wald, Benthin and Boulos, "Getting rid of packets", 2008). Descendants with at most sixteen
+//! triangles become leaves. Boxes are stored as centres and half sizes, since these can be rotated into another frame
+//! with two matrix products. Leaves store corners, rounded to `f32`, which reject far more triangles than boxes do.
 
 use super::{BinaryNode, Tracer};
 use glam::{DMat3, Vec3};
 
-/// Lanes of a node and of a leaf.
+/// Number of lanes: boxes in a node, triangles in a leaf.
 pub(crate) const WIDTH: usize = 16;
 
-/// By axis and lane.
+/// Sixteen points, by axis and lane.
 pub(crate) type Points = [[f32; WIDTH]; 3];
 
-/// The hierarchy. Boxes are along axes of the caller's choice. The first node is the root; there is none without triangles.
+/// The hierarchy, with boxes along axes chosen by the caller. The first node is the root; empty if there are no
+/// triangles.
 pub(crate) struct Bvh16 {
     pub nodes: Vec<Bvh16Node>,
     pub leaves: Vec<Bvh16Leaf>,
 }
 
-/// Up to sixteen boxes. Lanes from `count` on are not to be used.
+/// Up to sixteen boxes. Lanes from `count` on are invalid.
 #[derive(Default)]
 pub(crate) struct Bvh16Node {
     pub centre: Points,
@@ -29,16 +30,16 @@ pub(crate) struct Bvh16Node {
     pub count: usize,
 }
 
-/// Up to sixteen triangles. Lanes from `count` on are not to be used.
+/// Up to sixteen triangles. Lanes from `count` on are invalid.
 #[derive(Default)]
 pub(crate) struct Bvh16Leaf {
     pub corners: [Points; 3],
-    /// Indices among the tracer's triangles.
+    /// Indices in [`Tracer::corners`].
     pub ids: [u32; WIDTH],
     pub count: usize,
 }
 
-/// What is in a box.
+/// The content of a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Child {
     /// An index among the nodes.
@@ -48,7 +49,7 @@ pub(crate) enum Child {
 }
 
 impl Child {
-    /// Where walks start.
+    /// Start of every traversal.
     pub const ROOT: Self = Self::Node(0);
 }
 
@@ -58,7 +59,7 @@ impl Default for Child {
     }
 }
 
-/// Numbers of the bits that are set.
+/// Indices of the set bits, ascending.
 #[inline(always)]
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -68,13 +69,14 @@ pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The bits of so many lanes.
+/// A bit set of the first `count` lanes.
 #[inline(always)]
 pub(crate) fn first_lanes(count: usize) -> u32 {
     (1 << count) - 1
 }
 
-/// Pushes a node among its siblings, which start at `first`, so that the nearest, by `near`, is last.
+/// Pushes an entry among its siblings, which start at `first`, so that the nearest one (by `near`) is on top of the
+/// stack.
 #[inline(always)]
 pub(crate) fn push_far_first<T: Copy>(stack: &mut Vec<T>, first: usize, new: T, near: impl Fn(&T) -> f32) {
     let mut at = stack.len();
@@ -87,7 +89,8 @@ pub(crate) fn push_far_first<T: Copy>(stack: &mut Vec<T>, first: usize, new: T, 
 }
 
 impl Bvh16 {
-    /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by `padding`.
+    /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by
+    /// `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {
         let turned = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
         let bounds = |triangle| {
@@ -108,7 +111,7 @@ impl Bvh16 {
     }
 }
 
-/// How many triangles each node of a binary hierarchy holds.
+/// Number of triangles below each node of a binary hierarchy.
 fn triangles_below(tree: &[BinaryNode]) -> Vec<u32> {
     let mut below: Vec<u32> = tree.iter().map(|node| node.count).collect();
     let mut order = Vec::new();
@@ -127,7 +130,7 @@ fn triangles_below(tree: &[BinaryNode]) -> Vec<u32> {
     below
 }
 
-/// Bvh16 nodes in the making.
+/// State of the collapse.
 struct Collapse<'a> {
     tree: &'a [BinaryNode],
     order: &'a [u32],
@@ -137,7 +140,7 @@ struct Collapse<'a> {
 }
 
 impl Collapse<'_> {
-    /// Makes wide nodes of binary ones, parents before children.
+    /// Collapses all nodes, parents before children.
     fn run(&mut self) {
         let mut pending = Vec::new();
         if !self.tree.is_empty() {
@@ -169,7 +172,7 @@ impl Collapse<'_> {
         self.triangles[member as usize] as usize <= WIDTH
     }
 
-    /// Makes a leaf of all that a binary node holds.
+    /// Makes a leaf of all triangles below a binary node.
     fn leaf(&mut self, member: u32) -> Child {
         let mut leaf = Bvh16Leaf::default();
         let mut pending = vec![member];
@@ -191,7 +194,7 @@ impl Collapse<'_> {
         Child::Leaf(self.bvh.leaves.len() as u32 - 1)
     }
 
-    /// Up to sixteen descendants that cover a node: the largest are opened first.
+    /// Up to sixteen descendants that together replace a node; the largest are opened first.
     fn open(&self, binary: u32) -> Vec<u32> {
         let mut members = vec![binary];
         while members.len() < WIDTH {

@@ -1,17 +1,18 @@
-//! A direction, and where rays along it meet triangles.
+//! A ray direction, and the ray/triangle test.
 //!
 //! Based on: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", *Journal of Computer Graphics Techniques*
-//! 2(1), 2013. Departures: in `f64`, so that there is no fall-back for edges that come out as zero, and without culling.
+//! 2(1), 2013. Departures: everything is in `f64`, so there is no fall-back for edge functions of zero; no culling.
 
 use glam::{DVec3, Vec3};
 
-/// A ray's direction with what the triangle test needs of it; shared by all rays towards one sun.
+/// A ray direction, prepared for the triangle test; shared by all rays towards one sun.
 #[derive(Debug, Clone, Copy)]
 pub struct Direction {
     unit: DVec3,
-    /// Axis along which the direction is largest, last; the other two in an order that keeps the winding.
+    /// The three axes: last the one along which the direction is largest, the others in an order that keeps the
+    /// winding.
     pub(super) axes: [usize; 3],
-    /// Shear that turns the direction into the last axis.
+    /// Shear that maps the direction to the last axis.
     pub(super) shear: DVec3,
 }
 
@@ -32,9 +33,10 @@ impl Direction {
         self.unit
     }
 
-    /// Where a ray from `origin` meets a triangle, in front of the origin: distance and corner weights.
+    /// Intersects a ray from `origin` with a triangle: distance (in units of the origin's space) and weights of the
+    /// second and third corner. Hits behind the origin do not count.
     #[inline]
-    pub(super) fn meet(&self, origin: DVec3, corners: &[Vec3; 3]) -> Option<(f64, [f64; 2])> {
+    pub(super) fn intersect(&self, origin: DVec3, corners: &[Vec3; 3]) -> Option<(f64, [f64; 2])> {
         let [a, b, c] = corners.map(|corner| self.sheared(corner.as_dvec3() - origin));
         let edges = [c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x];
         if edges.iter().any(|&e| e < 0.0) && edges.iter().any(|&e| e > 0.0) {
@@ -42,7 +44,7 @@ impl Direction {
         }
         let determinant = edges[0] + edges[1] + edges[2];
         let distance = (edges[0] * a.z + edges[1] * b.z + edges[2] * c.z) / determinant;
-        // Not `distance <= 0.0`: a ray in the triangle's plane has a NaN here, and misses.
+        // A ray in the triangle's plane has a NaN distance, and must miss.
         (distance > 0.0).then(|| (distance, [edges[1] / determinant, edges[2] / determinant]))
     }
 

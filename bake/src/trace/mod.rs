@@ -1,21 +1,31 @@
-//! Rays against the scene. This is the only file that names obvhs.
+//! Traces rays against the scene. This is the only file that uses obvhs.
 //!
-//! The hierarchy is obvhs' eight-wide compressed BVH, walked in `f32`; triangles are tested in `f64` on their `f32`
-//! corners. Three departures from using obvhs as it comes:
+//! The hierarchy is obvhs' eight-wide compressed BVH, traversed in `f32`; triangles are tested in `f64` on their `f32`
+//! corners. Three departures from plain obvhs:
 //!
-//! * **Watertight triangles.** Its own test leaves gaps at shared edges. Ours is "Watertight Ray/Triangle Intersection"
-//!   (Woop, Benthin and Wald, *Journal of Computer Graphics Techniques* 2(1), 2013): neighbours compute the same edge
-//!   function with opposite sign, and both ends of the sign count as a hit.
-//! * **Padded boxes.** Its slab test rounds both ways. Boxes are grown by [`BOX_PADDING`] of the scene's size, more than
-//!   the walk's rounding can amount to.
-//! * **Tracer space.** Its nodes clamp sizes to an absolute 1e-4. The scene is therefore scaled by a power of two, which
-//!   loses no bit, until its half size lies between 512 and 1024 units.
+//! * **Watertight triangles.** obvhs' own test leaves gaps at shared edges. Ours is "Watertight Ray/Triangle
+//!   Intersection" (Woop, Benthin and Wald, *Journal of Computer Graphics Techniques* 2(1), 2013): neighbours compute
+//!   the same edge function with opposite signs, and zero counts as a hit for both.
+//! * **Padded boxes.** obvhs' slab test rounds in both directions. Boxes are grown by [`BOX_PADDING`] of the scene's
+//!   size, which is more than the rounding error of a traversal.
+//! * **Tracer space.** obvhs' nodes clamp sizes to an absolute 1e-4. So the scene is scaled by a power of two, which is
+//!   exact, until its half size is between 512 and 1024 units. Public methods take and return bake space; the doc of
+//!   [`crate::scene`] explains the spaces.
+//!
+//! # Where shadow rays start
+//!
+//! Two offsets keep a surface from shading itself:
+//!
+//! * The **lift** ([`Tracer::lift`]) moves the origin off the surface along its normal, by a few rounding steps of the
+//!   surface's coordinates, and as far away from the triangle's edges.
+//! * The **run-up** ([`Tracer::run_up_m`]) then moves the start *back* along the ray, by half the least lift. So a
+//!   point exactly on the edge between two walls is shaded by both walls, but never by its own surface.
 
 mod alpha_mask;
 pub(crate) mod bvh16;
 mod direction;
+mod lamp_ray;
 mod packet;
-mod reach;
 
 pub use direction::Direction;
 pub use packet::{PACKET, PacketScratch, PacketTracer, ShadowQuery};
@@ -30,15 +40,15 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 
-/// Growth of every box, as a share of tracer space's half size.
+/// Growth of every box, as a share of the scene's largest half size in tracer space.
 const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;
-/// How far shadow rays start above their surface, in steps of the `f32` in which its corners are held: enough that a
-/// flat wall of many triangles, each corner rounded by half a step, does not shade itself.
+/// Lift of shadow rays off their surface, in rounding steps of its `f32` corners: enough that a flat wall of many
+/// triangles, each corner rounded by half a step, does not shade itself.
 const LIFT_STEPS: f64 = 4.0;
-/// One step of an `f32`, as a share of its value.
+/// One rounding step of an `f32`, relative to its value.
 const STEP: f64 = 1.0 / (1 << 23) as f64;
 
-/// A scene made ready for rays. Every position and distance in its methods is bake space, in metres.
+/// A scene prepared for ray tracing. Public methods take and return positions and distances in bake space, in metres.
 pub struct Tracer {
     bvh: CwBvh,
     /// Corners in tracer space, in the hierarchy's order.
@@ -47,12 +57,11 @@ pub struct Tracer {
     flat: Vec<u32>,
     alpha_mask: AlphaMasks,
     tracer_from_bake: f64,
-    /// How far shadow rays start before their origin, in tracer space: half of the least lift, so that a point exactly
-    /// on the edge where two walls meet is shaded by both, and by its own surface never.
+    /// Run-up of shadow rays in tracer space: half of the least lift.
     run_up: f64,
-    /// For each instance, how far off its surface shadow rays start.
+    /// For each instance, the lift of its shadow rays.
     lift_m: Vec<f64>,
-    /// For each flat triangle, its middle.
+    /// For each flat triangle, its centroid.
     centroid_m: Vec<Vec3>,
     /// For each flat triangle, its instance.
     instance: Vec<u32>,
@@ -63,13 +72,13 @@ pub struct Tracer {
 pub struct Hit {
     /// Flat index in [`Geometry`].
     pub triangle: u32,
-    /// Distance from the ray's origin.
+    /// Distance from the ray's origin, in metres.
     pub distance_m: f64,
-    /// Weights of the triangle's second and third corner.
+    /// Weights of the triangle's second and third corner, 0 to 1.
     pub barycentric: [f64; 2],
 }
 
-/// A triangle as an occluder, to be tried first by the next ray in the same direction.
+/// A triangle that occluded a ray. The next ray tests it first, since it is likely occluded by the same triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Occluder(u32);
 
@@ -96,9 +105,9 @@ impl Tracer {
         Self { bvh, corners, flat, alpha_mask, tracer_from_bake, run_up, lift_m, centroid_m, instance }
     }
 
-    /// Where a shadow ray from a point of a triangle should start: off the surface, along `side` (its unit normal, or
-    /// the opposite), by more than rounding moved its corners and less than anything one would model; and as far off
-    /// the triangle's edges, since a point exactly on one lies as much inside a room as outside.
+    /// The origin of a shadow ray from a point of a triangle: moved along `side` (the unit normal or its opposite) by
+    /// more than the corners' rounding and less than any modelled detail, and moved inwards as far from the triangle's
+    /// edges, since a point exactly on an edge is as much inside a room as outside.
     pub fn lift(&self, point_m: DVec3, side: DVec3, triangle: u32) -> DVec3 {
         let triangle = triangle as usize;
         let lift_m = self.lift_m[self.instance[triangle] as usize];
@@ -106,49 +115,50 @@ impl Tracer {
         point_m + side * lift_m + inwards.clamp_length_max(lift_m)
     }
 
-    /// Corners of every triangle that blocks light, tracer space. Their index here is what an [`Occluder`] holds.
+    /// Corners in tracer space of every triangle that blocks light. An [`Occluder`] holds an index into this.
     pub(crate) fn corners(&self) -> &[[Vec3; 3]] {
         &self.corners
     }
 
-    /// Whether a triangle has holes cut by alpha.
+    /// Whether a triangle has an alpha mask.
     #[inline]
     pub(crate) fn has_alpha_mask(&self, id: u32) -> bool {
         self.alpha_mask.has_alpha_mask(id as usize)
     }
 
-    /// A triangle with holes.
-    pub(crate) fn cut(&self, id: u32) -> Option<MaskedTriangle<'_>> {
+    /// A triangle's alpha mask, if it has one.
+    pub(crate) fn mask(&self, id: u32) -> Option<MaskedTriangle<'_>> {
         self.alpha_mask.view(id as usize)
     }
 
-    /// Scale of tracer space: a power of two.
+    /// Factor from bake to tracer space, a power of two.
     pub(crate) fn tracer_from_bake(&self) -> f64 {
         self.tracer_from_bake
     }
 
-    /// How far back along the ray shadow rays start, in tracer space.
+    /// Run-up of shadow rays, in tracer space.
     pub(crate) fn run_up(&self) -> f64 {
         self.run_up
     }
 
-    /// How far before its origin a shadow ray starts, along its direction: half of the least lift of any instance.
+    /// Run-up of shadow rays in metres: how far before its origin a ray starts. Half of the least lift of any instance.
     pub fn run_up_m(&self) -> f64 {
         self.run_up / self.tracer_from_bake
     }
 
-    /// Whether anything solid lies along the direction.
+    /// Whether some solid surface lies along the direction.
     pub fn is_occluded(&self, origin_m: DVec3, direction: &Direction) -> bool {
         self.occluder(origin_m, direction).is_some()
     }
 
-    /// Something solid along the direction, not always the nearest.
+    /// A solid triangle along the direction, not necessarily the nearest.
     pub fn occluder(&self, origin_m: DVec3, direction: &Direction) -> Option<Occluder> {
         let origin = self.shadow_start(origin_m, direction);
-        self.any(origin, direction, f32::INFINITY, |id| self.meet(origin, direction, id).is_some())
+        self.any(origin, direction, f32::INFINITY, |id| self.intersect(origin, direction, id).is_some())
     }
 
-    /// A triangle for which `hides` holds, of those whose boxes are met within `reach` (tracer space, as the origin).
+    /// A triangle for which `hides` holds, among those whose boxes the ray meets within `reach` (origin and reach in
+    /// tracer space).
     fn any(&self, origin: DVec3, direction: &Direction, reach: f32, hides: impl Fn(usize) -> bool) -> Option<Occluder> {
         let ray = Ray { tmax: reach, ..ray(origin, direction) };
         let mut found = None;
@@ -165,10 +175,10 @@ impl Tracer {
     /// Whether one given triangle lies along the direction.
     #[inline]
     pub fn is_occluded_by(&self, occluder: Occluder, origin_m: DVec3, direction: &Direction) -> bool {
-        self.meet(self.shadow_start(origin_m, direction), direction, occluder.0 as usize).is_some()
+        self.intersect(self.shadow_start(origin_m, direction), direction, occluder.0 as usize).is_some()
     }
 
-    /// Where a shadow ray really starts, in tracer space.
+    /// Start of a shadow ray in tracer space, with the run-up.
     #[inline]
     fn shadow_start(&self, origin_m: DVec3, direction: &Direction) -> DVec3 {
         origin_m * self.tracer_from_bake - direction.unit() * self.run_up
@@ -185,12 +195,12 @@ impl Tracer {
         let ray = ray(origin, direction);
         let mut nearest: Option<(usize, f64, [f64; 2])> = None;
         self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, id| {
-            let Some((distance, barycentric)) = self.meet(origin, direction, id) else { return f32::INFINITY };
+            let Some((distance, barycentric)) = self.intersect(origin, direction, id) else { return f32::INFINITY };
             if nearest.is_some_and(|(_, least, _)| distance >= least) || !accept(self.flat[id]) {
                 return f32::INFINITY;
             }
             nearest = Some((id, distance, barycentric));
-            // The walk prunes by this: never let rounding hide a box that holds something nearer.
+            // The traversal skips boxes beyond this; the margin keeps rounding from hiding a nearer surface.
             (distance * (1.0 + 1e-6)) as f32
         });
         nearest.map(|(id, distance, barycentric)| Hit {
@@ -205,12 +215,12 @@ impl Tracer {
         self.closest_hit_where(origin_m, direction, |_| true)
     }
 
-    /// Calls `visit` with every triangle along the direction (its flat index, whether it has holes or not) and its distance,
-    /// in no order. A ray through an edge meets both of its triangles.
+    /// Calls `visit` with the flat index and the distance in metres of every triangle along the direction, in no order.
+    /// Alpha masks are ignored. A ray through an edge meets both of its triangles.
     pub fn for_each_hit(&self, origin_m: DVec3, direction: &Direction, mut visit: impl FnMut(u32, f64)) {
         let origin = origin_m * self.tracer_from_bake;
         self.bvh.ray_traverse(ray(origin, direction), &mut RayHit::none(), |_, id| {
-            if let Some((distance, _)) = direction.meet(origin, &self.corners[id]) {
+            if let Some((distance, _)) = direction.intersect(origin, &self.corners[id]) {
                 visit(self.flat[id], distance / self.tracer_from_bake);
             }
             f32::INFINITY
@@ -218,8 +228,8 @@ impl Tracer {
     }
 
     #[inline]
-    fn meet(&self, origin: DVec3, direction: &Direction, id: usize) -> Option<(f64, [f64; 2])> {
-        let met = direction.meet(origin, &self.corners[id])?;
+    fn intersect(&self, origin: DVec3, direction: &Direction, id: usize) -> Option<(f64, [f64; 2])> {
+        let met = direction.intersect(origin, &self.corners[id])?;
         self.alpha_mask.is_solid(id, met.1).then_some(met)
     }
 }
@@ -229,13 +239,13 @@ impl Tracer {
 pub(crate) struct BinaryNode {
     /// Low and high corner of its box.
     pub bounds: [Vec3; 2],
-    /// How many primitives it holds itself; none if it has children.
+    /// Number of primitives of a leaf; 0 for an inner node.
     pub count: u32,
-    /// Its first primitive's place in the order, or its first child's index; the second child follows it.
+    /// A leaf's first primitive, as an index in the order; or an inner node's first child, which the second follows.
     pub first: u32,
 }
 
-/// A binary hierarchy over boxes, root first, and the order of its primitives: one a leaf. Empty for no boxes.
+/// A binary hierarchy over boxes, root first, with one primitive per leaf, and the order of its primitives.
 pub(crate) fn binary_hierarchy(boxes: &[[Vec3; 2]]) -> (Vec<BinaryNode>, Vec<u32>) {
     if boxes.is_empty() {
         return (Vec::new(), Vec::new());
@@ -252,12 +262,12 @@ pub(crate) fn binary_hierarchy(boxes: &[[Vec3; 2]]) -> (Vec<BinaryNode>, Vec<u32
     (bvh.nodes.iter().map(node).collect(), bvh.primitive_indices)
 }
 
-/// A ray for obvhs, which takes the sign of -0.0 for that of its inverse in one place and not in another.
+/// A ray for obvhs. Adding zero removes -0.0, whose sign obvhs treats inconsistently.
 fn ray(origin: DVec3, direction: &Direction) -> Ray {
     Ray::new_inf(origin.as_vec3a(), direction.unit().as_vec3a() + Vec3A::ZERO)
 }
 
-/// The power of two that brings the largest coordinate to between 512 and 1024.
+/// The power of two that scales the largest coordinate to between 512 and 1024.
 fn scale_to_tracer_space(geometry: &Geometry) -> f64 {
     let largest = geometry.triangles.iter().flatten().map(|v| v.abs().max_element()).fold(0.0, f32::max);
     match largest > 0.0 {
@@ -266,8 +276,9 @@ fn scale_to_tracer_space(geometry: &Geometry) -> f64 {
     }
 }
 
-/// For each instance, how far off its surface shadow rays start. Its corners were rounded twice, in the file (in object
-/// space, perhaps at map coordinates of millions) and in bake space; its neighbours' at most at the scene's edge.
+/// For each instance, the lift of its shadow rays in metres. Corners were rounded twice: in the file (in object space,
+/// perhaps at map coordinates of millions) and in bake space. Neighbours' corners were rounded at most like those at
+/// the scene's border.
 fn lifts_m(scene: &Scene, geometry: &Geometry) -> Vec<f64> {
     let largest =
         |points: &mut dyn Iterator<Item = &Vec3>| f64::from(points.map(|p| p.abs().max_element()).fold(0.0, f32::max));
@@ -283,7 +294,7 @@ fn lifts_m(scene: &Scene, geometry: &Geometry) -> Vec<f64> {
     scene.instances.iter().enumerate().map(lift).collect()
 }
 
-/// A triangle's box, grown.
+/// A triangle's bounding box, enlarged by the padding.
 struct PaddedBox(Aabb);
 
 impl PaddedBox {
@@ -323,7 +334,7 @@ mod tests {
         let mut random = || 2.0 * pseudo_random(&mut state) - 1.0;
         for _ in 0..20_000 {
             let origin = DVec3::new(random(), random(), random()) * 0.5;
-            // Towards corners and points of edges, where leaks live.
+            // Towards corners and points of edges, where leaks would be.
             let triangle = triangles[((random() * 0.5 + 0.5) * (triangles.len() - 1) as f64) as usize];
             let [a, b, _] = triangle.map(|v| v.as_dvec3());
             for target in [a, (a + b) * 0.5, a.lerp(b, 0.1)] {

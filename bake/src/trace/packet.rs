@@ -1,61 +1,61 @@
-//! Rays in all directions against sixteen boxes or sixteen triangles at once.
+//! Traces packets of up to sixteen incoherent rays through a 16-wide BVH.
 //!
-//! Theory: rays over a hemisphere have little in common, so that packets of them waste lanes; but one ray can be tested
-//! against all children of a wide node together (Wald, Benthin and Boulos, "Getting rid of packets", *IEEE Symposium on
-//! Interactive Ray Tracing*, 2008). What they can share is the walk itself: sixteen rays that go roughly the same way meet
-//! mostly the same nodes, and each node is then fetched, and its children pushed, once for all of them.
+//! Theory: rays over a hemisphere have little in common, so SIMD over rays wastes lanes. Instead, one ray is tested
+//! against all children of a wide node at once (Wald, Benthin and Boulos, "Getting rid of packets", *IEEE Symposium on
+//! Interactive Ray Tracing*, 2008). Rays of a packet share the traversal: sixteen rays of roughly equal direction meet
+//! mostly the same nodes, so each node is loaded, and its children are pushed, once for all of them.
 //!
-//! Practice: a place on the stack holds a node and the set of rays that met its box. Each of these rays is tested against
-//! the node's children by itself, so no lane is ever spent on a ray that is not there.
+//! Practice: a stack entry is a node and the set of rays that met its box. Each of these rays is tested against the
+//! node's children separately, so no lane is spent on a ray that did not meet the node.
 //!
-//! Precision: boxes and triangles are tested in `f32`, conservatively: boxes are grown, and a triangle is kept if the ray
-//! passes it within [`CORNER_PADDING`]. What is kept is then asked in `f64`, by the very test that [`Tracer`] uses. So
-//! answers are the tracer's, watertight at shared edges, and do not depend on the width of SIMD.
+//! Precision: boxes and triangles are tested in `f32`, conservatively: boxes are enlarged, and a triangle is a
+//! candidate if the ray passes within [`CORNER_PADDING`] of it. Candidates are then tested in `f64`, with the test of
+//! [`Tracer`]. So results equal the tracer's, are watertight at shared edges, and do not depend on the SIMD width.
 
 use super::bvh16::{Bvh16, Bvh16Leaf, Bvh16Node, Child, WIDTH, bits, first_lanes, push_far_first};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
 use glam::{DMat3, DVec3};
 
-/// Growth of every box, tracer space (whose half size is 512 to 1024): more than the walk's rounding of a ray's start and
-/// of its distances can amount to.
+/// Growth of every box in tracer space (whose half size is 512 to 1024): more than the rounding of a ray's start and of
+/// its distances.
 const BOX_PADDING: f32 = 1.0 / 256.0;
-/// How far beside a triangle a ray may pass and still be asked in `f64`, tracer space: sixteen steps of an `f32` at 1024.
-/// Start, shear and differences round by a quarter of that, the products of edge functions by as much again.
+/// Largest distance of a ray from a candidate triangle, in tracer space: sixteen rounding steps of an `f32` at 1024.
+/// Start, shear and differences are rounded by a quarter of that, the products of edge functions by another quarter.
 const CORNER_PADDING: f32 = 1.0 / 512.0;
 
-/// A hierarchy for rays in all directions. Positions and distances in its methods are bake space, in metres.
+/// Traces packets of rays in all directions. Positions and distances in its methods are in bake space, in metres.
 pub struct PacketTracer<'a> {
     tracer: &'a Tracer,
     bvh: Bvh16,
-    /// For each flat triangle, its index among the tracer's; [`u32::MAX`] if it is not solid.
+    /// For each flat triangle, its index in [`Tracer::corners`]; [`u32::MAX`] if it is not solid.
     id_of_flat: Vec<u32>,
     level: Level,
 }
 
-/// Room that a walk needs, kept from one to the next.
+/// Buffers of a traversal, reused by the next one.
 #[derive(Debug, Default)]
 pub struct PacketScratch {
     near: [f32; WIDTH],
     rays: Vec<ShadowRay>,
-    /// What rays have yet to go to together, and which of them.
+    /// Stack for occlusion: a child and the set of rays that met it.
     shared: Vec<(Child, u32)>,
-    /// The same with their distances.
+    /// Stack for nearest hits: the same with distances.
     sorted: Vec<QueuedChild>,
-    /// For each ray, the children of a node that it met.
+    /// For each ray, the set of a node's children that it met.
     children: [u32; PACKET],
 }
 
-/// What a walk has yet to go to.
+/// A stack entry of the search for nearest hits.
 #[derive(Debug, Clone, Copy)]
 struct QueuedChild {
     child: Child,
     met_by: u32,
-    /// Least distance along any of the rays that met it.
+    /// Least distance along any of the rays that met it, tracer space.
     near: f32,
 }
 
-/// A ray as the walk has it, tracer space.
+/// A ray rounded to `f32` for the conservative tests, tracer space.
 #[derive(Debug)]
 struct RayF32 {
     start: [f32; 3],
@@ -67,7 +67,7 @@ struct RayF32 {
 
 impl RayF32 {
     fn new(start: DVec3, direction: &Direction) -> Self {
-        // A component of zero would make a NaN of a box side that the ray starts on.
+        // A component of zero would give NaN for a box side that the ray starts on.
         let inverse = |d: f64| 1.0 / if d.abs() < 1e-12 { 1e-12f64.copysign(d) } else { d };
         let unit = direction.unit();
         Self {
@@ -79,32 +79,32 @@ impl RayF32 {
     }
 }
 
-/// How many shadow rays can be asked about together.
+/// Most rays in a packet.
 pub const PACKET: usize = 16;
 
 /// A ray from a surface.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowQuery {
-    /// Where it starts: see [`Tracer::lift`].
+    /// Origin in bake space: see [`Tracer::lift`].
     pub origin_m: DVec3,
-    /// Unit, and before the surface's plane.
+    /// Unit direction, pointing away from the surface.
     pub direction: DVec3,
-    /// The triangle that it leaves, which cannot stop it: flat index in [`crate::scene::Geometry`].
+    /// The triangle that the ray leaves, which cannot occlude it: flat index in [`crate::scene::Geometry`].
     pub triangle: u32,
 }
 
-/// A shadow ray made ready, tracer space.
+/// A prepared shadow ray, tracer space.
 #[derive(Debug)]
 struct ShadowRay {
     ray_f32: RayF32,
     start: DVec3,
     direction: Direction,
-    /// The triangle that it leaves, among the tracer's.
+    /// The triangle that the ray leaves: index in [`Tracer::corners`].
     own: u32,
 }
 
 impl<'a> PacketTracer<'a> {
-    /// Builds over all that blocks light.
+    /// Builds the hierarchy over every triangle that blocks light.
     pub fn new(tracer: &'a Tracer) -> Self {
         let padding = BOX_PADDING + tracer.run_up as f32;
         let mut id_of_flat = vec![u32::MAX; tracer.instance.len()];
@@ -112,25 +112,26 @@ impl<'a> PacketTracer<'a> {
         Self { tracer, bvh: Bvh16::new(tracer, DMat3::IDENTITY, padding), id_of_flat, level: Level::new() }
     }
 
-    /// Which of up to [`PACKET`] shadow rays something solid stops: a bit set. Rays that go roughly the same way from
-    /// neighbouring points are the fastest. `guess` is asked first, and left at something that stopped one of them: the
-    /// answer does not depend on it.
+    /// The set of occluded rays, as bits, among up to [`PACKET`] shadow rays. Rays of roughly equal direction from
+    /// neighbouring points are the fastest. `guess` is tested first, and is set to a triangle that occluded one of the
+    /// rays; it only affects speed.
     pub fn occluded(&self, scratch: &mut PacketScratch, queries: &[ShadowQuery], guess: &mut Option<Occluder>) -> u32 {
         scratch.rays.clear();
         scratch.rays.extend(queries.iter().map(|query| self.ray(query)));
-        let mut stopped = 0;
+        let mut occluded = 0;
         if let Some(Occluder(id)) = *guess {
-            // What does not stop one of them will hardly stop the next.
-            let first = scratch.rays.iter().take_while(|ray| ray.own != id && self.meets(ray, id).is_some()).count();
-            stopped = (1u32 << first) - 1;
+            // A guess that misses one ray will hardly occlude the next.
+            let first =
+                scratch.rays.iter().take_while(|ray| ray.own != id && self.intersect(ray, id).is_some()).count();
+            occluded = (1u32 << first) - 1;
         }
-        let open = first_lanes(queries.len()) & !stopped;
+        let open = first_lanes(queries.len()) & !occluded;
         if open != 0 && !self.bvh.nodes.is_empty() {
             let level = self.level;
             *guess = None;
-            stopped |= dispatch!(level, simd => self.find_occluded(simd, scratch, open, guess));
+            occluded |= dispatch!(level, simd => self.find_occluded(simd, scratch, open, guess));
         }
-        stopped
+        occluded
     }
 
     fn ray(&self, query: &ShadowQuery) -> ShadowRay {
@@ -144,7 +145,7 @@ impl<'a> PacketTracer<'a> {
         }
     }
 
-    /// For each of up to [`PACKET`] shadow rays, the nearest surface within `reach_m`; for the rest, none.
+    /// For each of up to [`PACKET`] shadow rays, the nearest surface within `reach_m` metres; `None` for missing rays.
     pub fn nearest(&self, scratch: &mut PacketScratch, queries: &[ShadowQuery], reach_m: f64) -> [Option<Hit>; PACKET] {
         scratch.rays.clear();
         scratch.rays.extend(queries.iter().map(|query| self.ray(query)));
@@ -166,11 +167,11 @@ impl<'a> PacketTracer<'a> {
     }
 
     #[inline]
-    fn meets(&self, ray: &ShadowRay, id: u32) -> Option<(f64, [f64; 2])> {
-        self.tracer.meet(ray.start, &ray.direction, id as usize)
+    fn intersect(&self, ray: &ShadowRay, id: u32) -> Option<(f64, [f64; 2])> {
+        self.tracer.intersect(ray.start, &ray.direction, id as usize)
     }
 
-    /// Walks for the rays of a bit set, and gives back those that something stops.
+    /// Traverses for the rays in the bit set `open`; returns the set of those that are occluded.
     #[inline(always)]
     fn find_occluded<S: Simd>(
         &self,
@@ -210,7 +211,7 @@ impl<'a> PacketTracer<'a> {
                         let ray = &rays[index];
                         for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, f32::INFINITY)) {
                             let id = leaf.ids[lane];
-                            if id != ray.own && self.meets(ray, id).is_some() {
+                            if id != ray.own && self.intersect(ray, id).is_some() {
                                 *found = Some(Occluder(id));
                                 active &= !(1 << index);
                                 break;
@@ -226,7 +227,7 @@ impl<'a> PacketTracer<'a> {
         open & !active
     }
 
-    /// Walks for all rays, near nodes first, and finds what is nearest to each.
+    /// Traverses for all rays, near nodes first, and finds each ray's nearest hit.
     #[inline(always)]
     fn find_nearest<S: Simd>(
         &self,
@@ -276,7 +277,7 @@ impl<'a> PacketTracer<'a> {
                         for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, *reach as f32 * FAR_SLACK)) {
                             let id = leaf.ids[lane];
                             if id != ray.own
-                                && let Some((distance, barycentric)) = self.meets(ray, id)
+                                && let Some((distance, barycentric)) = self.intersect(ray, id)
                                 && is_nearer((id, distance), found, *reach)
                             {
                                 (*reach, *found) = (distance, Some(NearestHit { id, distance, barycentric }));
@@ -289,10 +290,10 @@ impl<'a> PacketTracer<'a> {
     }
 }
 
-/// The walk prunes by distances in `f32`: its end is moved out by more than those round.
+/// Margin for skipping boxes by their distance in `f32`: more than the distance's rounding.
 const FAR_SLACK: f32 = 1.0 + 1e-6;
 
-/// What is nearest to a ray so far, tracer space.
+/// A ray's nearest hit so far, tracer space.
 #[derive(Debug, Clone, Copy)]
 struct NearestHit {
     id: u32,
@@ -300,7 +301,7 @@ struct NearestHit {
     barycentric: [f64; 2],
 }
 
-/// Of equally near triangles the one with the lowest index counts, whatever the order they are met in.
+/// Among equally near triangles the lowest index wins, independent of the traversal's order.
 #[inline]
 fn is_nearer((id, distance): (u32, f64), found: &Option<NearestHit>, reach: f64) -> bool {
     match found {
@@ -309,7 +310,7 @@ fn is_nearer((id, distance): (u32, f64), found: &Option<NearestHit>, reach: f64)
     }
 }
 
-/// Which of a node's boxes a ray meets before `far`: a bit set. `near` gets where it enters them.
+/// The set of a node's boxes that a ray meets before `far`. `near` gets the distances at which it enters them.
 #[inline(always)]
 fn node_met<S: Simd>(simd: S, node: &Bvh16Node, ray: &RayF32, far: f32, near: &mut [f32; WIDTH]) -> u32 {
     let [x, y, z] = ray.inverse;
@@ -327,7 +328,7 @@ fn node_met<S: Simd>(simd: S, node: &Bvh16Node, ray: &RayF32, far: f32, near: &m
     met.to_bitmask() as u32 & first_lanes(node.count)
 }
 
-/// Which triangles of a leaf a ray may meet before `far`: a bit set.
+/// The set of a leaf's triangles that a ray may hit before `far`.
 #[inline(always)]
 fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, ray: &RayF32, far: f32) -> u32 {
     let [i, j, k] = ray.axes;
@@ -368,7 +369,7 @@ mod tests {
     use crate::testing::{SceneBuilder, block, floor, icosphere, pseudo_random};
     use glam::{Vec2, Vec3};
 
-    /// Stones, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
+    /// Spheres, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
     fn packets(check: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
         let mut builder = SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0));
         for i in 0..12 {
@@ -399,18 +400,19 @@ mod tests {
     }
 
     #[test]
-    fn packets_are_stopped_by_what_stops_single_rays() {
+    fn packets_are_occluded_where_single_rays_are() {
         packets(|tracer, packet_tracer, queries| {
             let expected = queries.iter().map(|q| tracer.is_occluded(q.origin_m, &Direction::new(q.direction)));
-            let expected = expected.enumerate().fold(0, |bits, (i, is_stopped)| bits | u32::from(is_stopped) << i);
+            let expected =
+                expected.enumerate().fold(0, |bits, (i, is_occluded_alone)| bits | u32::from(is_occluded_alone) << i);
             for level in [Level::new(), Level::baseline()] {
                 packet_tracer.level = level;
                 for count in [PACKET, 5] {
                     let mut guess = None;
                     for _ in 0..2 {
-                        let stopped =
+                        let occluded =
                             packet_tracer.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
-                        assert_eq!(stopped, expected & first_lanes(count));
+                        assert_eq!(occluded, expected & first_lanes(count));
                     }
                 }
             }
@@ -418,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_find_what_is_nearest_to_single_rays() {
+    fn packets_find_the_nearest_hits_of_single_rays() {
         packets(|tracer, packet_tracer, queries| {
             for (level, reach_m) in [(Level::new(), f64::INFINITY), (Level::baseline(), 1.5)] {
                 packet_tracer.level = level;

@@ -90,7 +90,7 @@ fn invalid_lamps_are_refused() {
     desk.write("list.json", br#"{"positions": [[0, 1, 0], [1, 1, 0]]}"#);
     let run = |more: &[&str]| desk.run(&[&EXACT[..], more].concat());
     run(&["--path=one.json"]).fails("one key", 3, &["1 keys: give 2 to"]);
-    run(&["--lamp=still.json"]).fails("no motion", 3, &["keys 0 and 1", "stands still"]);
+    run(&["--lamp=still.json"]).fails("no motion", 3, &["keys 0 and 1", "does not move"]);
     run(&["--path=mixed.json"]).fails("mixed", 3, &["key 1", "give every key a 'position'"]);
     run(&["--path=list.json"]).fails("a list", 3, &["'position' in every key"]);
     run(&["--lamp=sun.json"]).fails("a sun", 3, &["key 0", "'position'"]);

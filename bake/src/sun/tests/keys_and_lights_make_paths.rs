@@ -37,7 +37,7 @@ fn bad_files_say_what_and_where() {
     let up = r#"{"direction": [0,1,0]}"#;
     for (keys, told) in [
         (r#"{"t": 0, "direction": [1,0,0]}"#.to_owned(), "1 keys: give 2 to 1000"),
-        (format!("{up}, {up}"), "keys 0 and 1 of the path (counted from 0) point the same way"),
+        (format!("{up}, {up}"), "keys 0 and 1 of the path (counted from 0) point in the same direction"),
         (format!(r#"{up}, {{"direction": [0,-1,0]}}"#), "opposite ways"),
         (format!(r#"{up}, {{"direction": [0,0,0]}}"#), "key 1 of the path (counted from 0) has a direction without"),
         (format!(r#"{up}, {{"azimuth_deg": 3}}"#), "needs either 'direction' or both"),

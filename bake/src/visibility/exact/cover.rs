@@ -121,7 +121,7 @@ impl<'a> Coverer<'a> {
     fn close_pieces(&mut self, packet: &Packet, at: [usize; 2], spans: &[[f64; 2]], query: &mut Query) -> bool {
         let [slot, lane] = at;
         let gaps = &mut query.gaps[lane];
-        let Some(cut) = self.tracer.cut(packet.ids[slot]) else {
+        let Some(cut) = self.tracer.mask(packet.ids[slot]) else {
             return spans.iter().fold(false, |closes, &span| gaps.close(span) | closes);
         };
         let both = |span: &[f64; 2], gap: &[f64; 2]| [span[0].max(gap[0]), span[1].min(gap[1])];

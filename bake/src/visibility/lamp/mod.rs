@@ -150,7 +150,7 @@ fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut Ope
     if hidden.is_empty() {
         return false;
     }
-    match tracer.cut(id) {
+    match tracer.mask(id) {
         None => hidden.iter().fold(false, |any, &span| open.close(span) | any),
         Some(cut) => {
             let pierced = Pierced::new(cut, leg, corners);
