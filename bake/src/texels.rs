@@ -62,7 +62,8 @@ pub struct TexelLane {
     pub lit: Vec<[f64; 2]>,
 }
 
-/// Picks `count` random covered texels (all, if there are fewer), in page and row order. The same seed picks the same texels.
+/// Picks `count` random covered texels (all, if there are fewer), in page and row order. The same seed picks the same
+/// texels.
 pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
     let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
     let atlas = set.manifest.atlas(&scene);

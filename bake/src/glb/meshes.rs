@@ -146,8 +146,8 @@ impl SharedData {
         json!({ "attributes": attributes, "indices": self.indices, "material": material })
     }
 
-    /// A primitive with baked coordinates in set 1. Without texture coordinates they are set 0 as well, because set 1 is
-    /// invalid without set 0.
+    /// A primitive with baked coordinates in set 1. Without texture coordinates they are set 0 as well, because set 1
+    /// is invalid without set 0.
     fn primitive(&self, baked: usize, material: usize) -> Value {
         let mut attributes = self.attributes.clone();
         attributes.entry("TEXCOORD_0").or_insert_with(|| json!(baked));

@@ -1,9 +1,9 @@
 //! Writes `scene.glb`: the scene for any glTF viewer, with the bake's own texture coordinates.
 //!
-//! The file keeps everything of its source that sunbake reads: the hierarchy with names and full-precision matrices, meshes
-//! with unchanged vertices, base colours with their images' original bytes, cameras. It adds `TEXCOORD_1`, the layout of
-//! each mesh; vertices on chart borders are duplicated. `TEXCOORD_0` is the set that the base colour uses, since viewers
-//! expect sets to be numbered from 0 without gaps.
+//! The file keeps everything of its source that sunbake reads: the hierarchy with names and full-precision matrices,
+//! meshes with unchanged vertices, base colours with their images' original bytes, cameras. It adds `TEXCOORD_1`, the
+//! layout of each mesh; vertices on chart borders are duplicated. `TEXCOORD_0` is the set that the base colour uses,
+//! since viewers expect sets to be numbered from 0 without gaps.
 //!
 //! The same scene gives the same bytes. Reading the file back gives the same nodes, instances and triangles in the same
 //! order.
@@ -64,8 +64,8 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
     })
 }
 
-/// Writes a scene with ambient visibility at its vertices (for each instance, one number per vertex of its mesh, 0 to 1) and
-/// without baked coordinates.
+/// Writes a scene with ambient visibility at its vertices (for each instance, one number per vertex of its mesh, 0 to
+/// 1) and without baked coordinates.
 ///
 /// # Errors
 ///

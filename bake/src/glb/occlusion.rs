@@ -1,7 +1,7 @@
 //! Ambient occlusion for standard viewers: `occlusionTexture`, on page coordinates in `TEXCOORD_1`.
 //!
-//! A layout is shared by all instances of a mesh, but a standard texture has no rectangle per instance. So each instance
-//! gets its own page coordinates; positions, normals and indices stay shared.
+//! A layout is shared by all instances of a mesh, but a standard texture has no rectangle per instance. So each
+//! instance gets its own page coordinates; positions, normals and indices stay shared.
 
 use super::binary::Binary;
 use super::materials::{WrittenMaterials, index_of};
@@ -11,8 +11,8 @@ use crate::scene::Scene;
 use glam::Vec2;
 use serde_json::json;
 
-/// A page's occlusion texture for viewers: 8 bits, and of two sides the brighter one. Most models whose materials are all
-/// double-sided are closed, with dark insides, and cameras are mostly outside.
+/// A page's occlusion texture for viewers: 8 bits, and of two sides the brighter one. Most models whose materials are
+/// all double-sided are closed, with dark insides, and cameras are mostly outside.
 #[derive(Debug, Clone)]
 pub struct OcclusionPage {
     png: Vec<u8>,
@@ -58,8 +58,8 @@ impl Occlusion<'_> {
         (!placement.is_empty()).then_some(placement.page as usize)
     }
 
-    /// Adds each page's texture to the materials used on the page; a material on several pages is duplicated. Returns the
-    /// material index of every instance.
+    /// Adds each page's texture to the materials used on the page; a material on several pages is duplicated. Returns
+    /// the material index of every instance.
     pub(super) fn add_to(&self, scene: &Scene, written: &mut WrittenMaterials, binary: &mut Binary) -> Vec<usize> {
         // No mip levels: they would blend neighbouring charts.
         let sampler = json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 });
