@@ -18,6 +18,7 @@ pub mod bias;
 pub mod cascades;
 pub mod extents;
 pub mod ground;
+mod map_request;
 pub mod perspective;
 pub mod polyhedron;
 pub mod projection;
@@ -214,7 +215,7 @@ impl MapSettings {
             }
             Variant::Perspective | Variant::Cube => {
                 let samples_m = &scene.samples_m;
-                let request = perspective::MapRequest {
+                let request = map_request::MapRequest {
                     view,
                     extents,
                     receiver_box_m,

@@ -23,36 +23,13 @@
 //! * Where the sun stands in view, one map would have to cover half of all directions. The *cube* form has up to six maps around the sun,
 //!   at right angles; each is fitted to the part that it sees, with a margin over its neighbours.
 
-use super::extents::{Extents, Near};
+use super::map_request::MapRequest;
 use super::polyhedron::Polyhedron;
 use super::projection::MapProjection;
 use super::warp::Warp;
-use crate::camera::View;
-use glam::{DVec3, DVec4};
 
 /// Distances of the virtual camera behind the eye that are tried, as shares of the greatest depth.
 const BACK_SHARES: [f64; 8] = [0.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 0.25, 0.5, 1.0];
-/// Texel size in pixels below which smaller texels gain nothing.
-const FINE_PX: f64 = 0.5;
-
-/// What the maps of a view must hold, and how large they are.
-pub struct MapRequest<'a> {
-    /// The view.
-    pub view: &'a View,
-    /// How far casters and receivers reach.
-    pub extents: &'a Extents,
-    /// The bounding box of drawn triangles.
-    pub receiver_box_m: [DVec3; 2],
-    /// Points sampled on drawn triangles.
-    pub samples_m: &'a [DVec3],
-    /// Edge of a map.
-    pub size_texels: u32,
-    /// Texels kept around what each map must hold.
-    pub margin_texels: f64,
-    /// Where the maps' depths begin.
-    pub near: Near,
-}
-
 /// The maps of a view: one, or with `is_cube` up to six. Empty where nothing is in view or nothing can be in shadow.
 pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection> {
     let Some(shaded) = request.extents.shaded(request.near) else { return Vec::new() };
@@ -65,7 +42,7 @@ pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection
         samples.extend(region.corners());
     }
     let mut best: Option<(f64, Vec<MapProjection>)> = None;
-    for warp in request.warps(&region) {
+    for warp in warps(request, &region) {
         let maps =
             if is_cube { warp.cube(request, &region) } else { warp.single(request, &region).into_iter().collect() };
         let score = request.score(&maps, &samples);
@@ -82,66 +59,26 @@ pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection
     }
 }
 
-impl MapRequest<'_> {
-    /// The part of the receivers' box that is in view.
-    fn region(&self) -> Polyhedron {
-        let rows = self.view.clip_from_eye().as_dmat4().transpose();
-        let eye_m = self.view.eye_m.as_dvec3();
-        let about_eye = |row: DVec4| row.truncate().extend(row.w - row.truncate().dot(eye_m));
-        let [x, y, w] = [rows.x_axis, rows.y_axis, rows.w_axis];
-        let near = w - DVec4::W * f64::from(self.view.near_m());
-        let planes = [w + x, w - x, w + y, w - y, near];
-        planes.iter().fold(Polyhedron::of_box(self.receiver_box_m), |body, plane| body.cut(about_eye(*plane)))
-    }
-
-    /// The sampled points that are in view.
-    fn samples(&self) -> Vec<DVec3> {
-        let eye_m = self.view.eye_m.as_dvec3();
-        let [width, height] = self.view.size.map(f64::from);
-        let is_in_view = |p: &&DVec3| {
-            let [x, y] = {
-                let ray = **p - eye_m;
-                let depth_m = ray.dot(self.view.forward.as_dvec3());
-                if depth_m <= 0.0 { [-1.0; 2] } else { self.view.pixel_of(ray / depth_m) }
-            };
-            (0.0..width).contains(&x) && (0.0..height).contains(&y)
-        };
-        self.samples_m.iter().filter(is_in_view).copied().collect()
-    }
-
-    /// The mean logarithm of the texels' size in pixels, over points in view. Less is better.
-    fn score(&self, maps: &[MapProjection], samples_m: &[DVec3]) -> f64 {
-        let eye_m = self.view.eye_m.as_dvec3();
-        let of_sample = |p: &DVec3| {
-            let pixel_m = p.distance(eye_m) * f64::from(self.view.pixel_angle_rad);
-            match maps.iter().find(|map| map.holds(*p, 0.0)) {
-                Some(map) => (map.texel_m(*p) / pixel_m).max(FINE_PX).ln(),
-                // Never in shadow, so it needs no texel.
-                None => FINE_PX.ln(),
-            }
-        };
-        samples_m.iter().map(of_sample).sum::<f64>() / samples_m.len().max(1) as f64
-    }
-
-    /// All warps that are tried.
-    fn warps(&self, region: &Polyhedron) -> Vec<Warp> {
-        let (eye_m, forward) = (self.view.eye_m.as_dvec3(), self.view.forward.as_dvec3());
-        let depths = region.corners().map(|p| (p - eye_m).dot(forward));
-        let [near_m, far_m] = depths.fold([f64::INFINITY, 0.0], |[low, high], d| [d.min(low), d.max(high)]);
-        let range_m = [near_m.clamp(1e-6 * far_m, 0.999 * far_m), far_m];
-        let towards = self.extents.axes.towards;
-        let warps = |share: f64| Warp::around(self.view, towards, region, range_m, share * far_m);
-        BACK_SHARES.into_iter().flat_map(warps).collect()
-    }
+/// All warps that are tried.
+fn warps(request: &MapRequest<'_>, region: &Polyhedron) -> Vec<Warp> {
+    let (eye_m, forward) = (request.view.eye_m.as_dvec3(), request.view.forward.as_dvec3());
+    let depths = region.corners().map(|p| (p - eye_m).dot(forward));
+    let [near_m, far_m] = depths.fold([f64::INFINITY, 0.0], |[low, high], d| [d.min(low), d.max(high)]);
+    let range_m = [near_m.clamp(1e-6 * far_m, 0.999 * far_m), far_m];
+    let towards = request.extents.axes.towards;
+    let warps = |share: f64| Warp::around(request.view, towards, region, range_m, share * far_m);
+    BACK_SHARES.into_iter().flat_map(warps).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::camera::Camera;
+    use crate::camera::View;
     use crate::shadow_maps::ShadowScene;
+    use crate::shadow_maps::{Extents, Near};
     use crate::stage::Stage;
-    use glam::{Vec2, Vec3};
+    use glam::{DVec3, Vec2, Vec3};
     use sunbake::testing::{SceneBuilder, floor};
 
     struct Case {

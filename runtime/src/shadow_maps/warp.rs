@@ -1,7 +1,7 @@
 //! One virtual camera of a perspective shadow map, and the maps that look along an axis of its space. The theory is in
 //! [`super::perspective`].
 
-use super::perspective::MapRequest;
+use super::map_request::MapRequest;
 use super::polyhedron::Polyhedron;
 use super::projection::MapProjection;
 use crate::camera::View;

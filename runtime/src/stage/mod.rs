@@ -180,6 +180,11 @@ impl Stage {
         })
     }
 
+    /// Bytes of its maps, as a GPU holds them.
+    pub fn gpu_bytes(&self) -> u64 {
+        self.pages.iter().map(|page| page.gpu_bytes(self.bits)).sum()
+    }
+
     /// The material of a triangle.
     pub fn material(&self, triangle: usize) -> &Material {
         self.scene.material(self.geometry.instance[triangle] as usize)

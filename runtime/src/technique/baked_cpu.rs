@@ -70,15 +70,10 @@ impl Technique for BakedCpu<'_> {
     }
 
     fn bytes(&self) -> u64 {
-        map_bytes(self.stage)
+        self.stage.gpu_bytes()
     }
 
     fn effects(&self, _shot: &Shot, _output: Output) -> DrawPlan {
         on_cpu::baked(self.stage)
     }
-}
-
-/// Bytes of the maps of a stage, as a GPU holds them.
-pub(super) fn map_bytes(stage: &Stage) -> u64 {
-    stage.pages.iter().map(|page| page.gpu_bytes(stage.bits)).sum()
 }

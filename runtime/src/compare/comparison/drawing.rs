@@ -2,13 +2,14 @@
 
 use super::super::report::Times;
 use super::super::technique::TechniqueSpec;
+use super::not_drawn::NotDrawn;
 use super::set_reader::SetReader;
 use super::times::timed_frame;
 use super::{Comparison, FrameRequest};
-use crate::gpu::{GpuError, VolumeSettings};
+use crate::gpu::VolumeSettings;
 use crate::image::Raster;
 use crate::shadow_maps::{MapSettings, Means, Variant};
-use crate::stage::{Stage, StageError};
+use crate::stage::Stage;
 use crate::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Volumes};
 use crate::volumes::Savings;
 use std::time::Instant;
@@ -21,27 +22,6 @@ pub(super) struct DrawnFrames {
     pub setup_s: f64,
     pub memory_bytes: u64,
     pub plan: Vec<String>,
-}
-
-/// Why a technique drew nothing.
-pub(super) enum NotDrawn {
-    Gpu(GpuError),
-    Stage(StageError),
-    Cancelled,
-    /// It cannot be drawn here, and why.
-    Unsupported(String),
-}
-
-impl From<GpuError> for NotDrawn {
-    fn from(error: GpuError) -> Self {
-        Self::Gpu(error)
-    }
-}
-
-impl From<StageError> for NotDrawn {
-    fn from(error: StageError) -> Self {
-        Self::Stage(error)
-    }
 }
 
 impl Comparison<'_> {

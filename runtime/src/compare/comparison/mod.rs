@@ -6,6 +6,7 @@
 
 mod drawing;
 mod lit_frame;
+mod not_drawn;
 mod scoring;
 mod set_reader;
 mod times;
@@ -24,8 +25,9 @@ use crate::light::Moment;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::technique::{Technique, Truth};
-use drawing::{DrawnFrames, NotDrawn};
+use drawing::DrawnFrames;
 use lit_frame::lit_frames;
+use not_drawn::NotDrawn;
 use set_reader::SetReader;
 use sunbake_shaders::AmbientModel;
 use times::mean_times;

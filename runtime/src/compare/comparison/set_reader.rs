@@ -2,7 +2,7 @@
 
 use super::super::report::SetEntry;
 use super::super::technique::Playback;
-use super::drawing::NotDrawn;
+use super::not_drawn::NotDrawn;
 use crate::stage::Stage;
 use std::path::{Path, PathBuf};
 use sunbake::disk::manifest::Manifest;
