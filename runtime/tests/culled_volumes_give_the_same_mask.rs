@@ -1,5 +1,5 @@
-//! V14 to V16, K1 and K2: what shadow volumes may leave out, and where they end. Every way of drawing them gives one mask, bit for
-//! bit, and it is hard truth's. These tests need a GPU adapter, and fail without one.
+//! V14 to V16, K1 and K2: what may be culled from shadow volumes, and where they end. Every way of drawing them gives
+//! the same mask, bit for bit, and it equals hard truth. These tests need a GPU adapter, and fail without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, floor};
@@ -182,8 +182,8 @@ fn k2_hulls_of_view_and_light_may_be_degenerate() {
     };
     let eye = DVec3::new(3.1, 1.7, 2.9);
     let target = DVec3::new(0.1, 0.4, 0.1);
-    // The lamp in view; at the eye; in the plane of the view's side, of a face and of the ground's top; within a caster; behind
-    // the eye.
+    // The lamp in view; at the eye; in the plane of the view's side, of a face and of the ground's top; within a
+    // caster; behind the eye.
     let places = [
         target + DVec3::Y * 0.8,
         eye,

@@ -151,7 +151,8 @@ fn a_scene_a_million_metres_away_looks_the_same() {
     }
 }
 
-/// A card one metre above the ground whose texture is opaque in two quarters of four and below the cutoff in the others.
+/// A card one metre above the ground whose texture is opaque in two quarters of four and below the cutoff in the
+/// others.
 fn leaf() -> Scene {
     let texel = |i: u32| [40, 160, 40, if i == 0 || i == 3 { 255 } else { 100 }];
     let (builder, image) = SceneBuilder::new().image(2, 2, (0..4).map(texel).collect());

@@ -1,5 +1,5 @@
-//! A lamp that moves through a room: the GPU against its CPU twin, playback against truth, and what it costs a set without
-//! one. These tests need a GPU adapter, and fail without one.
+//! A lamp that moves through a room: the GPU against its CPU twin, playback against truth, and no cost for sets
+//! without a lamp. These tests need a GPU adapter, and fail without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::lamp::{LampKey, LampPath};
@@ -79,7 +79,7 @@ fn mean_difference(a: &Raster<f32>, b: &Raster<f32>) -> f64 {
     sum / a.pixels.len() as f64
 }
 
-/// With finer texels playback nears truth, and nowhere far from a shadow's edge do they differ: no acne, no leaks.
+/// With finer texels playback approaches truth, and they differ only near shadow edges: no acne, no leaks.
 #[test]
 fn playback_is_near_truth_and_wrong_at_edges_alone() {
     let stage = stage(false, 0.1, Bits::Sixteen);
@@ -115,7 +115,7 @@ fn far_from_change(image: &Raster<f32>, reach: i64) -> Vec<usize> {
     (0..image.pixels.len()).filter(is_far).collect()
 }
 
-/// Straight above open floor the lamp's light falls with the square of distance.
+/// Straight above an open floor the lamp's light falls with the square of the distance.
 #[test]
 fn light_falls_with_the_square_of_distance() {
     let level = floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0);

@@ -1,5 +1,5 @@
-//! An edge that runs along the sun's path: one lane leaves it hard, several make it a penumbra. Held against the circular
-//! segment that the edge leaves of the disc.
+//! An edge that runs along the sun's path: one lane leaves it hard, several make it a penumbra. Compared with the
+//! circular segment of the disc that the edge leaves free.
 
 use glam::{DVec3, Vec2};
 use sunbake::maps::{Bits, Lane};
@@ -32,7 +32,8 @@ fn free_share(u: f64) -> f64 {
     1.0 - (u.acos() - u * (1.0 - u * u).sqrt()) / std::f64::consts::PI
 }
 
-/// What the maps say at noon: how far each place lies from the shadow's middle, in radii of the disc, and what it sees.
+/// What the maps give at noon: each pixel's distance from the shadow's middle, in radii of the disc, and its
+/// visibility.
 fn penumbra(stage: &Stage) -> Vec<(f64, f64)> {
     let shot = Shot::new(stage, view(stage, DVec3::new(0.0, 1.5, 0.0), DVec3::ZERO, [96, 96]));
     let moment = Moment::new(stage.path.as_ref(), 0.5);
@@ -53,7 +54,7 @@ fn an_edge_along_the_path_is_as_soft_as_there_are_lanes() {
         let off = |&(u, v): &(f64, f64)| (free_share(u - TEXEL) - v).max(v - free_share(u + TEXEL));
         let worst = found.iter().map(off).fold(0.0, f64::max);
         assert!(worst <= bound, "{lane_count} lanes: {worst}");
-        // The bound is met somewhere: the stair is there, and no coarser than it must be.
+        // The bound is nearly reached somewhere: there are steps, as coarse as the number of lanes makes them.
         assert!(worst > 0.6 * bound, "{lane_count} lanes: {worst}");
     }
 }

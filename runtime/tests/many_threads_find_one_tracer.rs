@@ -1,5 +1,5 @@
-//! What is built when it is first asked for is asked for before threads start: a thread that builds a tracer helps itself to other
-//! work meanwhile, and may be asked for the same tracer again.
+//! A stage's tracer is built on first use, and must be built before threads start: a rayon thread that waits while
+//! building one takes other work, which may need the same tracer, and would deadlock.
 
 use glam::DVec3;
 use sunbake::testing::{SceneBuilder, icosphere};

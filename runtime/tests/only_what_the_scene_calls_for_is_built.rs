@@ -1,4 +1,4 @@
-//! Counts of pipelines, textures, bindings and targets, held against scenes. These tests need a GPU adapter.
+//! Counts of pipelines, textures, bindings and targets that scenes need. These tests need a GPU adapter.
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
@@ -126,7 +126,7 @@ fn textures_alpha_masks_colours_and_second_sides_cost_only_the_scenes_that_have_
     assert_eq!((found.alpha_test_pipelines, found.two_sided_pipelines), (2, 2));
 }
 
-/// What volumes build for a plain scene seen from aside, and where its casters are counted.
+/// What volumes build for a plain scene seen from the side, and where its casters are counted.
 fn volume_census(scene: sunbake::scene::Scene, settings: VolumeSettings, eye: DVec3) -> (Census, [usize; 2]) {
     let gpu = gpu();
     let stage = Stage::plain(scene, Some(standing_sun(DVec3::new(0.3, 1.0, 0.2), 0.0)));
@@ -157,7 +157,7 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
         volume_bytes: base.volume_bytes,
         ..Census::default()
     };
-    // The ground shades nothing, and is left out.
+    // The ground shades nothing, so it casts no volume.
     assert_eq!((base, counted), (expected, [1, 0]));
     // An eye in the box's shadow needs faces behind the surface, and no longer those before it.
     let in_shadow = DVec3::new(0.3, -0.5, 0.3);
@@ -201,7 +201,7 @@ fn a_variant_builds_its_own_maps_and_pipelines_and_no_others() {
         let found = of_maps(variant, block);
         let maps = match variant {
             Variant::Planar => 0,
-            // From where the eye stands all of it is as near as it is far.
+            // From this camera the whole scene is at about one distance, so there is one cascade.
             Variant::Cascades => found.shadow_maps.clamp(1, 4),
             Variant::Cube => found.shadow_maps.clamp(1, 6),
             _ => 1,
@@ -247,7 +247,7 @@ fn a_variant_builds_its_own_maps_and_pipelines_and_no_others() {
 #[test]
 fn where_nothing_can_be_in_shadow_there_is_no_map() {
     for variant in Variant::ALL {
-        // The ground alone: whatever it could shade would lie below it.
+        // The ground alone shades nothing: nothing lies below it.
         let found = of_maps(variant, |builder| builder);
         assert_eq!((found.passes, found.shadow_pipelines, found.shadow_maps), (2, 0, 0), "{variant}");
         assert_eq!((found.shadow_masks, found.shadow_bytes), (0, 0), "{variant}");
@@ -266,7 +266,7 @@ fn a_map_tests_alpha_only_where_something_has_an_alpha_mask() {
     };
     let plain = of_maps(Variant::Compare, |builder| builder.soup(&cube()));
     let cut = of_maps(Variant::Compare, leaf);
-    // Depths as the camera sees them, depths as the sun does, and what is lit.
+    // A depth pass of the camera, one of the sun, and the lit pass.
     assert_eq!((plain.alpha_test_pipelines, cut.alpha_test_pipelines), (0, 3));
 }
 
@@ -288,7 +288,7 @@ fn a_map_is_kept_while_neither_the_sun_nor_what_it_follows_moves() {
         assert!(first.0 == first.1 && first.0 > 0, "{variant}");
         assert_eq!(drawn(&shots[0], 0.4), (0, first.1), "{variant}");
         let moved = drawn(&shots[1], 0.4);
-        // Cascades of one map hold all that there is.
+        // A single cascade holds the whole scene.
         let follows = variant.follows_view() && (variant, moved.1) != (Variant::Cascades, 1);
         assert_eq!(moved.0, if follows { moved.1 } else { 0 }, "{variant}");
         let later = drawn(&shots[1], 0.5);

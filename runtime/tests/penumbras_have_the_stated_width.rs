@@ -20,9 +20,9 @@ fn under_roof(height_m: f32) -> Stage {
     Stage::plain(scene.build(), Some(standing_sun(DVec3::Y, RADIUS_RAD)))
 }
 
-/// How far it is from where a quarter of the light arrives to where three quarters do, along x at z = 0.
+/// Distance in metres from where a quarter of the light arrives to where three quarters do, along x at z = 0.
 fn edge_m(gpu: &Gpu, stage: &Stage, variant: Variant, size_texels: u32) -> f64 {
-    // From before the roof's edge, which does not hide what it shades.
+    // The view looks past the roof's edge, so that the roof does not cover its shadow.
     let shot = Shot::new(stage, view(stage, DVec3::new(0.9, 0.35, 0.0), DVec3::new(0.0, 0.0, 0.0), [32, 256]));
     let mut maps = ShadowMaps::new(gpu, stage, MapSettings { size_texels, ..MapSettings::new(variant) }).unwrap();
     let seen = maps.visibility(&shot, &stage.moment(0.5)).unwrap().pixels;
@@ -41,8 +41,8 @@ fn penumbras_are_as_wide_as_the_sun_makes_them() {
     for height_m in [0.5f32, 1.0, 2.0] {
         let stage = under_roof(height_m);
         let found = edge_m(&gpu, &stage, Variant::Pcss, 2048);
-        // A straight edge leaves a quarter of a disc at 0.404 of its radius, and three quarters as far on the other side.
-        // A map knows the roof's upper side, which is a fifth of a metre higher.
+        // A straight edge leaves a quarter of a disc at 0.404 of its radius, and three quarters as far on the other
+        // side. A shadow map holds the roof's upper side, a fifth of a metre higher.
         let expected = 0.808 * (f64::from(height_m) + 0.2) * RADIUS_RAD.tan();
         assert!((found / expected - 1.0).abs() < 0.15, "{height_m} m: {found} for {expected}");
     }
@@ -55,7 +55,8 @@ fn the_blur_on_the_ground_is_some_texels_wide() {
     for size_texels in [128, 256] {
         let texel_m = 4.0 / f64::from(size_texels - 24);
         let found = edge_m(&gpu, &stage, Variant::Ground, size_texels) / texel_m;
-        // A binomial of nine has a deviation of 1.4 texels: from a quarter to three quarters it is 1.9, and filtering adds some.
+        // A binomial of nine has a deviation of 1.4 texels: from a quarter to three quarters it is 1.9, and filtering
+        // adds some.
         assert!((1.2..3.2).contains(&found), "{size_texels}: {found} texels");
     }
 }

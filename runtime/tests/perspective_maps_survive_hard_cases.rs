@@ -1,4 +1,5 @@
-//! P1 to P6: perspective shadow maps where they are known to break. These tests need a GPU adapter, and fail without one.
+//! P1 to P6: perspective shadow maps where they are known to break. These tests need a GPU adapter, and fail without
+//! one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
@@ -30,10 +31,11 @@ fn across(stage: &Stage) -> View {
     view(stage, DVec3::new(-57.0, 3.0, 2.0), DVec3::new(-20.0, 0.0, 0.0), [128, 128])
 }
 
-/// Towards which the view looks, level.
+/// The view's horizontal direction.
 const AHEAD: DVec3 = DVec3::new(0.998_5, 0.0, -0.054);
 
-/// Asserts that both forms have neither acne nor leaks under a sun, and how large their mean error is at most. The numbers of maps.
+/// Asserts that both forms have neither acne nor leaks under a sun, and bounds their mean error. Returns the numbers
+/// of maps.
 fn assert_sound(gpu: &Gpu, name: &str, towards: DVec3, most: f64) -> [usize; 2] {
     let stage = under_sun(field(), towards);
     let moment = stage.moment(0.5);
@@ -140,7 +142,7 @@ fn p6_the_faces_of_a_cube_meet_without_a_seam() {
         let [single, cube] = assert_sound(&gpu, "p6", towards, 0.02);
         most = most.max(cube);
         assert_eq!(single, 1);
-        // An open plain has no dark line where faces meet.
+        // An open plane has no dark line where faces meet.
         let plain = SceneBuilder::new()
             .soup(&floor(Vec2::splat(-60.0), Vec2::splat(60.0), 0.0))
             .block(Vec3::new(-59.0, -2.0, -59.0), Vec3::new(59.0, -1.0, 59.0));

@@ -1,4 +1,5 @@
-//! J1, and what a picture of what casts on the ground is to hold besides. These tests need a GPU adapter, and fail without one.
+//! J1, and further claims about shadows that are projected on the ground. These tests need a GPU adapter, and fail
+//! without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, block, floor};
@@ -40,7 +41,7 @@ fn j1_a_light_level_with_the_plane_gives_finite_numbers() {
 #[test]
 fn j1_a_caster_below_the_plane_casts_nothing_on_it() {
     let gpu = gpu();
-    // What is below would be thrown up on to the plane, against the light.
+    // A caster below would be projected up on to the plane, against the light.
     let scene = ground().block(Vec3::new(-1.0, -3.0, -1.0), Vec3::new(1.0, -1.0, 1.0)).build();
     let stage = under_sun(scene, ASLANT);
     let shot = Shot::new(&stage, from_aside(&stage));
@@ -48,7 +49,7 @@ fn j1_a_caster_below_the_plane_casts_nothing_on_it() {
         let seen = seen(&gpu, &shot, variant);
         assert!(on_ground(&shot).iter().all(|(i, _)| seen[*i] == 1.0), "{variant}");
     }
-    // Of one that stands in the plane only what is above casts.
+    // Of a caster that crosses the plane only the part above it casts.
     let half = ground().block(Vec3::new(-1.0, -3.0, -1.0), Vec3::new(1.0, 1.0, 1.0)).build();
     let stage = under_sun(half, ASLANT);
     let shot = Shot::new(&stage, from_aside(&stage));

@@ -70,7 +70,7 @@ fn m1_a_plane_at_a_grazing_sun_does_not_shade_itself() {
         let moment = stage.moment(0.5);
         let shots = [DVec3::new(4.1, 3.7, 5.3), DVec3::new(-5.0, 0.1, 2.0)]
             .map(|eye| Shot::new(&stage, view(&stage, eye, DVec3::new(0.0, 0.0, -0.2), SIZE)));
-        // Of a disc that touches the horizon only what is above it is seen.
+        // Of a disc that touches the horizon only the part above it is visible.
         let above_horizon = (0.5 + moment.sun_direction.y * moment.discs_per_radian).min(1.0);
         for (variant, size_texels) in UNTUNED.into_iter().flat_map(|v| [(v, 128), (v, 1024)]) {
             let expected = if variant == Variant::Pcss { above_horizon } else { 1.0 };
@@ -82,7 +82,7 @@ fn m1_a_plane_at_a_grazing_sun_does_not_shade_itself() {
             }
         }
     }
-    // Without any bias there is acne: the test can fail.
+    // Without a bias there is acne, so the test can fail.
     let stage = under_sun(ground_that_casts().build(), ASLANT);
     let shot = Shot::new(&stage, from_aside(&stage));
     let bare = MapSettings { bias: Bias::NONE, ..sized(Variant::Compare, 128) };
@@ -110,10 +110,10 @@ fn m2_a_wall_a_texel_thick_stands_on_its_shadow_and_lets_nothing_through() {
             let end_m = 2.0 / height;
             for (i, place) in surface_points(&shot) {
                 let (from_foot_m, along) = (place.x - 0.5 * f64::from(texel_m), place.z.abs());
-                // What the filter reaches on the ground: more along the light, where it is stretched.
+                // The filter's reach on the ground, which is longer along the light.
                 let reach_m = 4.0 * f64::from(texel_m) * (1.0 + 1.0 / height);
                 let is_in_shadow = place.y < 1e-3 && along < 3.0 - reach_m && from_foot_m < end_m - reach_m;
-                // Mostly dark within a texel of the foot, and wholly from two on.
+                // Mostly dark within a texel of the wall's foot, and fully dark from two texels on.
                 let most = [1.0, 0.5, 0.01][((from_foot_m / f64::from(texel_m)) as usize).min(2)];
                 assert!(
                     !is_in_shadow || f64::from(seen[i]) <= most,
@@ -166,7 +166,7 @@ fn m4_receivers_outside_the_map_are_lit_and_borders_do_not_smear() {
         let seen = maps.visibility(&shot, &moment).unwrap().pixels;
         let on_map = |p: DVec3| maps.renderer().maps().iter().any(|map| map.holds(p - stage.scene.centre_m, 0.0));
         let mut off_map = 0;
-        // The roof lies within 1.2 m of the middle, and throws its shadow as far again.
+        // The roof lies within 1.2 m of the middle, and its shadow reaches as far again.
         for (i, place) in surface_points(&shot) {
             let away_m = place.x.abs().max(place.z.abs());
             if place.y < 1e-3 && away_m > 2.6 {
@@ -233,7 +233,7 @@ fn m6_cascades_show_no_line_where_they_meet_and_do_not_read_each_other() {
         let shot = Shot::new(&stage, along);
         let seen = maps.visibility(&shot, &moment).unwrap().pixels;
         assert_eq!(maps.renderer().maps().len(), cascades);
-        // Between the street's edge and the posts' shadows nothing but light, on every cascade and between them.
+        // Between the street's edge and the posts' shadows all is lit, on every cascade and between them.
         let mut on_each = vec![0; cascades];
         for (i, place) in surface_points(&shot) {
             if place.y < 1e-3 && place.y > -1e-3 && place.z < -9.0 {
@@ -309,7 +309,7 @@ fn m7_shadows_stay_where_they_are_as_the_camera_moves_and_turns() {
             worst = worst.max(pairs.iter().sum::<f64>() / pairs.len() as f64);
         }
         println!("m7 {variant}: worst mean change {worst:.4}");
-        // A pixel is not a place: where edges pass through pixels, hard ones change.
+        // A pixel covers an area: where an edge passes through it, hard visibility may change.
         let bound = if variant == Variant::Perspective { 0.06 } else { 0.035 };
         assert!(worst < bound, "{variant}: {worst}");
     }
@@ -329,7 +329,8 @@ fn m8_views_from_a_millimetre_to_a_hundred_kilometres_are_finite() {
     assert!(ends.windows(2).all(|pair| pair[0] < pair[1]) && ends.iter().all(|end| end.is_finite()));
     for variant in UNTUNED {
         let error = assert_no_defects(&gpu, "m8", &stage, close, sized(variant, 2048));
-        // A map of all of it has texels of tens of metres: what follows the view still finds the block's shadow.
+        // A map of the whole scene has texels of tens of metres. Variants that follow the view still find the block's
+        // shadow.
         assert!(!variant.follows_view() || error < 0.02, "{variant}: {error}");
     }
 }

@@ -1,4 +1,4 @@
-//! The command, on a scene for which nothing was baked: what it draws, and what it refuses. Needs a GPU adapter.
+//! `sunplay frame` on a scene without a bake: what it draws, and what it refuses. Needs a GPU adapter.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,4 +1,4 @@
-//! Truth against trigonometry.
+//! Ray-traced truth against trigonometry.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::maps::Bits;
@@ -52,7 +52,7 @@ fn the_penumbra_of_a_straight_edge_is_a_segment_of_the_disc() {
     let shot = Shot::new(&stage, view(&stage, DVec3::new(0.0, 0.5, 0.0), DVec3::ZERO, [64, 64]));
     let mut penumbra = 0;
     for (place, v) in seen(&shot, Truth::Soft { rays: 1024 }) {
-        // How far the edge lies from the disc's centre, in radii; the disc is a circle on the plane at the edge's height.
+        // The edge's distance from the disc's centre, in radii. The disc is a circle on the plane at the edge's height.
         let u = (place.x / height / radius_rad.tan()).clamp(-1.0, 1.0);
         let free = 1.0 - (u.acos() - u * (1.0 - u * u).sqrt()) / std::f64::consts::PI;
         assert!((f64::from(v) - free).abs() < 0.006, "at {place}: {v} for {free}");

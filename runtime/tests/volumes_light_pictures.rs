@@ -1,5 +1,5 @@
-//! Pictures lit through shadow volumes against pictures shaded on the CPU from hard truth, an area light of many hard ones,
-//! and a comparer that can fail. These tests need a GPU adapter, and fail without one.
+//! Pictures lit through shadow volumes against pictures shaded on the CPU from hard truth, an area light of many hard
+//! ones, and a comparer that can fail. These tests need a GPU adapter, and fail without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::lamp::{LampKey, LampPath};

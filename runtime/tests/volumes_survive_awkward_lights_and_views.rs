@@ -1,5 +1,5 @@
-//! More hard cases of shadow volumes: lamps with a range and lamps that touch what casts, rooms seen from inside, suns that graze,
-//! lights that follow each other, scenes made at random. These tests need a GPU adapter, and fail without one.
+//! More hard cases of shadow volumes: lamps with a range, lamps that touch a caster, rooms seen from inside, grazing
+//! suns, several lights in one picture, random scenes. These tests need a GPU adapter, and fail without one.
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
@@ -37,7 +37,8 @@ fn a_view_through_the_far_end_of_a_finite_volume_is_right() {
 
 #[test]
 fn a_finite_volume_ends_beyond_the_range_of_what_is_nearest_to_the_lamp() {
-    // A wall whose middle is far nearer than its corners: if it ended by these, the end would lie within the range.
+    // A wall whose middle is far nearer to the lamp than its corners: a volume ended by the corners would end within
+    // the range.
     let wall = floor(Vec2::new(-2.5, -2.5), Vec2::new(2.5, 2.5), 1.0);
     let stage = under_lamp(ground().soup(&wall).build(), DVec3::new(0.1, 1.2, -0.2));
     let views = [view(&stage, DVec3::new(5.5, 0.8, 4.9), DVec3::new(0.0, 0.2, 0.0), SIZE), from_aside(&stage)];
@@ -59,7 +60,7 @@ fn every_way_agrees_about_a_lamp_that_touches_a_caster() {
         let moments = [stage.moment(0.0), with_range(&stage, 5.0)];
         for moment in moments {
             let name = format!("touching, place {i}");
-            // A lamp in a face, up to rounding, is on neither side of it: then truth is no judge.
+            // A lamp in a face, up to rounding, is on neither side of it: truth is not compared then.
             match (at - middle).length() > 5e-5 && i > 2 {
                 true => assert_right(&gpu, &name, &stage, &views, &moment, LightKind::Lamp),
                 false => assert_ways_agree(&gpu, &name, &stage, &views, &moment, LightKind::Lamp),
@@ -91,7 +92,8 @@ fn a_room_modelled_from_inside_shades_what_is_in_it() {
 #[test]
 fn culling_removes_nothing_that_shows() {
     let gpu = gpu();
-    // Surfaces that fill part of the picture, whose caster is out of view: the scissor rectangle is as small as it gets.
+    // Surfaces that fill part of the picture, whose caster is out of view: the scissor rectangle is as small as it
+    // gets.
     let slab = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 0.0);
     let roof = floor(Vec2::new(7.0, -2.0), Vec2::new(11.0, 2.0), 9.0);
     let stage = under_sun(SceneBuilder::new().soup(&slab).soup(&roof).build(), DVec3::new(1.0, 1.0, 0.0));
@@ -124,7 +126,7 @@ fn a_grazing_sun_loses_shadows_no_deeper_than_a_64th_of_a_pixel() {
             };
             let seen = of(Mode::Planned);
             assert!([Mode::ZFail, Mode::ZPass, Mode::Gpu].into_iter().all(|mode| of(mode) == seen), "modes differ");
-            // Prisms have walls of their own within the shadow, which cancel up to the last bit of a depth.
+            // Prisms have walls within the shadow, which cancel up to the last bit of a depth.
             let prisms = of(Mode::Triangles);
             let differ = prisms.pixels.iter().zip(&seen.pixels).filter(|(a, b)| a != b).count();
             println!("a curb of {height} m: {differ} pixels of prisms differ");
@@ -145,7 +147,7 @@ fn a_grazing_sun_loses_shadows_no_deeper_than_a_64th_of_a_pixel() {
 #[test]
 fn no_light_inherits_the_stencil_of_the_last() {
     let gpu = gpu();
-    // The sun goes its way before one renderer, and stands still before fresh ones.
+    // One renderer draws the moving sun, and a new renderer draws each of its positions.
     let scene = || ground().block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.4, 1.2, 0.5)).build();
     let stage = Stage::plain(scene(), Some(equinox(40.0)));
     let shot = Shot::new(&stage, from_aside(&stage));
@@ -156,7 +158,7 @@ fn no_light_inherits_the_stencil_of_the_last() {
         let seen = [&mut moving, &mut fresh].map(|volumes| mask(volumes, &shot, &moment, LightKind::Sun).pixels);
         assert!(seen[0] == seen[1], "at {t}");
     }
-    // A sun that shades, then a lamp whose range holds no caster: what the sun left in the stencil is not the lamp's.
+    // A sun that shades, then a lamp without casters in its range: the stencil of the sun does not count for the lamp.
     let stage = Stage::plain(scene(), Some(equinox(40.0))).with_lamp(Some(&lamp_at(DVec3::new(2.5, 0.9, 2.5))));
     let shot = Shot::new(&stage, from_aside(&stage));
     let moment = Moment { lamp: with_range(&stage, 1.2).lamp, ..stage.moment(0.4) };
@@ -170,8 +172,8 @@ fn no_light_inherits_the_stencil_of_the_last() {
     assert!(found.unexplained == 0, "{found:?}");
 }
 
-/// Blocks turned at random, some of them inside out, loose triangles, and a body that crosses itself, with three eyes, a sun and
-/// a lamp anywhere.
+/// Blocks turned at random, some of them inside out, loose triangles, and a body that crosses itself, with three
+/// eyes, a sun and a lamp anywhere.
 fn at_random(seed: u64) -> (Scene, DVec3, DVec3, Vec<[DVec3; 2]>) {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut random = move || pseudo_random(&mut state);
@@ -204,8 +206,8 @@ fn at_random(seed: u64) -> (Scene, DVec3, DVec3, Vec<[DVec3; 2]>) {
     (scene, towards, lamp, views)
 }
 
-/// Pixels without excuse that random scenes may have, all together: rasterisers cut what reaches out of the picture, and where
-/// they do, faces that share an edge may both cover a pixel's centre, or neither.
+/// Unexplained pixels that all random scenes together may have: rasterisers clip triangles at the picture's border,
+/// and there two faces that share an edge may both cover a pixel's centre, or neither.
 const CRACKS: usize = 1;
 
 #[test]
@@ -227,7 +229,7 @@ fn scenes_made_at_random_are_right() {
         add(&stage, &stage.moment(0.0), LightKind::Lamp);
         add(&stage, &with_range(&stage, 2.0), LightKind::Lamp);
     }
-    // Seven ways are compared with one: walls that cancel within a shadow do so up to the last bit of a depth.
+    // Seven ways are compared with one: walls within a shadow cancel up to the last bit of a depth.
     println!("{differ} pixels of other ways differ");
     assert!(differ <= 7 * all.pixels / 1_000_000, "{differ} pixels of other ways differ");
     println!("all: {}", all.sentence());

@@ -1,5 +1,5 @@
-//! V1 to V13, V17 and V18: shadow volumes where they are known to break. Every way of drawing them gives one mask, bit for bit,
-//! and it is hard truth's. These tests need a GPU adapter, and fail without one.
+//! V1 to V13, V17 and V18: shadow volumes where they are known to break. Every way of drawing them gives the same
+//! mask, bit for bit, and it equals hard truth. These tests need a GPU adapter, and fail without one.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Material, Mesh, Scene};
@@ -38,7 +38,7 @@ fn v1_the_eye_is_inside_a_volume() {
     let looking_out = view(&stage, DVec3::new(0.0, 1.0, 0.0), DVec3::new(6.0, 0.0, 1.0), SIZE);
     let moment = stage.moment(0.5);
     assert_right(&gpu, "v1", &stage, &[inside, looking_out], &moment, LightKind::Sun);
-    // Left to itself, the plan counts the roof behind the surface; asked for z-pass, it says that it did not.
+    // By default the plan counts the roof by z-fail; where z-pass is requested, it says that it did not use it.
     let shot = Shot::new(&stage, inside);
     for mode in [Mode::Planned, Mode::ZPass] {
         let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings { mode, ..VolumeSettings::default() }).unwrap();
@@ -90,7 +90,7 @@ fn v4_the_sun_lies_in_the_plane_of_silhouette_triangles() {
     for (i, towards) in [DVec3::Y, diagonal, DVec3::new(0.0, 1.0, 1.0), DVec3::ONE].into_iter().enumerate() {
         assert_sun(&format!("v4, sun {i}"), scene(), towards);
     }
-    // The plane of a face, turned by as little as an f32 can tell.
+    // The plane of a face, turned by the smallest angle that an f32 resolves.
     assert_sun("v4, turned", scene(), DVec3::new(1e-7, 1.0, 0.0));
 }
 
@@ -110,8 +110,8 @@ fn v5_255_256_and_257_casters_lie_in_a_stack() {
         let shot = Shot::new(&stage, from_aside(&stage));
         let moment = stage.moment(0.5);
         assert_right(&gpu, &format!("v5, {count}"), &stage, &[shot.view], &moment, LightKind::Sun);
-        // Counted without a stencil, as many prisms hold the darkest pixels as there are casters: at 256 a stencil that
-        // wraps would be back at none.
+        // Counted without a stencil, the darkest pixels lie in as many prisms as there are casters. A stencil of 8
+        // bits would wrap to 0 at 256.
         let mode = Mode::ZFail;
         let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings { mode, ..VolumeSettings::default() }).unwrap();
         let counts = volumes.renderer().counts(&shot.view, &moment, false).unwrap();
@@ -249,8 +249,8 @@ fn v11_t_junctions_do_not_leak() {
     let stage = under_sun(ground().soup_of(&roof, two_sided).build(), ASLANT);
     let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.6, 3.0), DVec3::new(0.0, 0.0, -1.0), [256, 256])];
     let found = assert_right(&gpu(), "v11", &stage, &views, &stage.moment(0.5), LightKind::Sun);
-    // The corners do lie on the edge here, and every prism is closed by itself: what rounding leaves is a hair's breadth, and
-    // stays below one pixel in ten thousand.
+    // The corners lie on the edge here, and every prism is closed by itself: rounding leaves gaps in less than one
+    // pixel in ten thousand.
     assert!(found.at_fine_edges + found.of_other_surfaces <= found.pixels / 10_000, "{}", found.sentence());
     assert!(Casters::new(&stage).counts.open_edges > 6);
 }

@@ -1,4 +1,5 @@
-//! Plans are held against what is built, and what each effect adds against its own verdict. These tests need a GPU adapter.
+//! Plans are compared with what is built, and what each effect adds with what it states. These tests need a GPU
+//! adapter.
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::disk::manifest::InstanceEntry;
@@ -46,7 +47,7 @@ fn draw(technique: &mut dyn Technique, shot: &Shot, output: Output) {
     }
 }
 
-/// What a picture of a baked stage builds, which is what its plan says before there is anything.
+/// What a picture of a baked stage builds, after checking that the plan said so before anything was built.
 fn baked(gpu: &Gpu, stage: &Stage, output: Output) -> (Census, DrawPlan) {
     let plan = baked_plan(stage, output);
     let shot = shot(stage, ASIDE);
@@ -65,7 +66,7 @@ fn lit(gpu: &Gpu, stage: &Stage) -> (Census, DrawPlan) {
     baked(gpu, stage, Output::Lit)
 }
 
-/// Whatever depends on how many texels a page has, which any surface changes.
+/// The counts without bytes of textures, which change with a page's number of texels.
 fn without_bytes(census: Census) -> Census {
     Census { map_bytes: 0, ..census }
 }
@@ -119,9 +120,9 @@ fn a_box_under_a_point_sun_builds_the_least() {
     assert_eq!(found, least);
     let on: Vec<&str> = plan.needs.iter().filter(|need| need.is_on).map(|need| need.effect.name()).collect();
     assert_eq!(on, ["depth-pass", "light-pass", "sky-background", "sun-times", "16-bit-times"]);
-    // A picture of visibility is spared the sky.
+    // A picture of visibility draws no sky.
     assert_eq!(baked(&gpu, &stage, Output::Visibility).0, Census { pipelines: 2, ..least });
-    // A sun of some width takes code, and nothing that is counted.
+    // A sun with a width needs more shader code, but no more resources.
     let (wide, wide_plan) = lit(&gpu, &plain_box(0.0047));
     assert_eq!((wide, turned_on(&wide_plan, &plan)), (least, vec!["penumbra"]));
     assert_eq!(wide_plan.need("penumbra").unwrap().takes, Census::default());
@@ -226,7 +227,7 @@ fn a_second_page_adds_its_textures_and_a_draw() {
     assert_eq!(plan.need("several-pages").unwrap().takes, adds);
 }
 
-/// What a picture under volumes builds: no more than its plan says before, and what it says after.
+/// What a picture with shadow volumes builds: at most what its plan says before, exactly what it says after.
 fn under_volumes(gpu: &Gpu, stage: &Stage, settings: VolumeSettings, eye: DVec3, output: Output) -> (Census, DrawPlan) {
     let most = volumes_plan(stage, &settings, output);
     let shot = shot(stage, eye);
@@ -269,7 +270,7 @@ fn with_lamp_above(stage: Stage) -> Stage {
 fn volumes_build_what_is_planned_and_each_need_adds_its_own() {
     let gpu = gpu();
     let settings = VolumeSettings::default();
-    // A slab, since a floor without a back is an open mesh itself.
+    // A slab, because a floor without a back is an open mesh.
     let slab = || SceneBuilder::new().soup(&block(Vec3::new(-3.0, -0.2, -3.0), Vec3::new(3.0, 0.0, 3.0)));
     let stage = |edit: fn(SceneBuilder) -> SceneBuilder| Stage::plain(edit(slab()).build(), sun(0.0));
     let (base, base_plan) = under_volumes(&gpu, &stage(with_box), settings, ASIDE, Output::Lit);
@@ -348,7 +349,7 @@ fn volumes_that_are_shown_are_planned_too() {
     assert_eq!(plan.need("shown-volumes").map(|need| need.takes.pipelines), Some(1));
 }
 
-/// What a picture under maps builds: no more than its plan says before, and what it says after.
+/// What a picture with shadow maps builds: at most what its plan says before, exactly what it says after.
 fn under_maps(gpu: &Gpu, stage: &Stage, variant: Variant, output: Output) -> (Census, DrawPlan) {
     let settings = MapSettings { size_texels: 64, ..MapSettings::new(variant) };
     let most = maps_plan(stage, &settings, output, u64::from(EDGE * EDGE));
@@ -360,7 +361,7 @@ fn under_maps(gpu: &Gpu, stage: &Stage, variant: Variant, output: Output) -> (Ce
     assert_eq!(before.totals, most.totals, "{variant} {output:?}");
     assert!(found.is_within(&most.totals), "{variant} {output:?}: {:?}", found.beyond(&most.totals));
     assert_eq!((plan.totals, plan.is_exact, most.is_exact), (found, true, false), "{variant} {output:?}");
-    // Maps that are kept take no pass.
+    // Maps kept from the last picture need no pass.
     draw(&mut technique, &shot, output);
     let again = technique.effects(&shot, output).totals;
     assert_eq!(again, technique.census().unwrap(), "{variant} {output:?}");
@@ -384,7 +385,7 @@ fn every_variant_of_maps_builds_what_is_planned_and_adds_its_own() {
         }
         let [(open, open_plan), (found, plan)] = [&bare, &boxed].map(|s| under_maps(&gpu, s, variant, Output::Lit));
         assert!(plan.is_on("sun-shadows") && !open_plan.is_on("sun-shadows"), "{variant}");
-        // What stands on the ground is another batch, and both may need pipelines of their own; all else is the shadows'.
+        // Objects on the ground are another batch, and both may need their own pipelines; the rest is due to shadows.
         let takes = plan.need("sun-shadows").unwrap().takes;
         let of_both = |census: Census| Census { pipelines: 0, two_sided_pipelines: 0, draws: 0, ..census };
         assert_eq!(of_both(found.beyond(&open)), of_both(takes), "{variant}");

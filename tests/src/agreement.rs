@@ -1,8 +1,9 @@
-//! How far an engine's intervals and brute force agree, sun by sun and edge by edge.
+//! How well an engine's intervals agree with brute force, sun by sun and edge by edge.
 
 use sunbake::visibility::Intervals;
 
-/// What comparing came to. Distances are in `t`, from the middle between two suns that brute force tells apart.
+/// The result of comparing. Distances are in `t`, from the middle between two neighbouring suns that brute force
+/// answers differently.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Agreement {
     /// Points compared.

@@ -1,11 +1,11 @@
-//! Ambient light at points of a scene, and what it should be.
+//! Ambient light at points of a scene, and closed forms of it.
 
 use crate::Traced;
 use glam::DVec3;
 use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimate, solve_ambient};
 use sunbake::atlas::SurfacePoint;
 
-/// So many rays, of everything, however far.
+/// Settings with so many rays, all outputs and no distance limit.
 pub fn rays(rays: u32) -> AmbientSettings {
     AmbientSettings { rays, distance_m: None, error: None, wants_bent: true, wants_sky: true, seed: 0 }
 }
@@ -29,8 +29,9 @@ pub fn flat(surface: SurfacePoint) -> AmbientPoint {
     AmbientPoint { shading_normal: surface.normal, surface }
 }
 
-/// Cosine-weighted share of the hemisphere about a normal that a polygon takes, as seen from `from`: Lambert's formula, of
-/// polygons that lie wholly before the plane (Arvo, *Analytic Methods for Simulated Light Transport*, 1995, chapter 3).
+/// Cosine-weighted share of the hemisphere about a normal that a polygon takes, as seen from `from`: Lambert's
+/// formula, of polygons that lie wholly before the plane (Arvo, *Analytic Methods for Simulated Light Transport*,
+/// 1995, chapter 3).
 pub fn share_of_polygon(from: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     let directions: Vec<DVec3> = polygon.iter().map(|corner| (*corner - from).normalize()).collect();
     let edge = |k: usize| {

@@ -1,8 +1,8 @@
-//! A report in a real browser: a probe works the page as a reader would, and tells what it found.
+//! A report in a real browser: a probe operates the page as a reader would, and returns what it found.
 //!
-//! Chromium prints a page's document once it is loaded. The probe is two scripts within the page: one in front keeps it
-//! from being taken for loaded, one at the end works the controls and leaves its verdict in the document. What is probed is
-//! a copy; the page itself is left as it is, its content policy included.
+//! Chromium prints a page's document once it is loaded. The probe is two scripts within the page: one in front keeps
+//! it from being taken for loaded, one at the end works the controls and leaves its verdict in the document. What is
+//! probed is a copy; the page itself is left as it is, its content policy included.
 
 use serde::Deserialize;
 use std::ffi::OsString;
@@ -44,7 +44,7 @@ pub struct Verdict {
     pub twins: usize,
 }
 
-/// Works a report in Chromium. Panics with advice where there is none.
+/// Operates a report in Chromium. Panics with advice where Chromium is not installed.
 pub fn probe(report: &Path) -> Verdict {
     let page = std::fs::read_to_string(report).unwrap_or_else(|error| panic!("{}: {error}", report.display()));
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -108,8 +108,8 @@ fn find_chromium() -> OsString {
     let found = names().into_iter().find(|name| crate::needs::answers(name));
     found.unwrap_or_else(|| {
         panic!(
-            "none of {:?} runs, and reports are tested in a browser: run tests/setup, install Chromium (Debian: chromium), \
-             or name one in CHROMIUM",
+            "none of {:?} runs, and reports are tested in a browser: run tests/setup, install Chromium (Debian: \
+             chromium), or name one in CHROMIUM",
             names()
         )
     })

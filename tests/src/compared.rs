@@ -1,4 +1,4 @@
-//! Small sets on disk, and what a comparison finds of them.
+//! Small sets on disk, and comparisons of them.
 
 use crate::write_scene;
 use glam::{DVec3, Vec2, Vec3};
@@ -13,7 +13,7 @@ use sunbake_runtime::compare::{Comparison, Outcome, Playback, SetOnDisk, Techniq
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::{Camera, Filter, Stage, View};
 
-/// Ground, a row of posts that chop the day into many spells, and a block, moved aside by so many metres.
+/// Ground, a row of posts that cut the day into many intervals, and a block, moved along x by so many metres.
 pub fn posts(aside_m: f32) -> Scene {
     let ground = floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0);
     let post = |i: i32| {
@@ -38,11 +38,11 @@ pub fn bake_into(folder: &Path, name: &str, scene: &Scene, edit: impl Fn(BakeSet
     sunbake::bake(&file, &folder.join(name), false, &edit(settings), &Silent).expect("a small scene bakes");
 }
 
-/// Times with filtering, as a set of one lane has them.
+/// Playback with filtering, of a set with one lane.
 pub const PLAYED: TechniqueSpec =
     TechniqueSpec::Baked(Playback { bits: Bits::Sixteen, lanes: 1, filter: Filter::Bilinear });
 
-/// What the CPU finds of a set, three times of the day through two cameras.
+/// Compares techniques on the CPU, at three times of day through two cameras.
 pub fn compared(set: &Path, techniques: &[TechniqueSpec], against: TechniqueSpec) -> Outcome {
     let stage = Stage::read(set).expect("a set").without_times();
     let look = |eye_m: DVec3| {

@@ -1,4 +1,4 @@
-//! Every engine with what it claims, and the check that it keeps its word.
+//! Every engine with its claimed accuracy, and the check that it keeps it.
 
 use crate::{Agreement, Oracle, Traced};
 use sunbake::atlas::SurfacePoint;
@@ -26,9 +26,9 @@ pub const RAYS: Candidate = Candidate {
     own_suns: Some(256),
 };
 
-/// Bisection: as blind as its coarse suns are far apart, but what it finds it finds to a second. A whole step blind, not
-/// half: it looks at the very end of a spell, where the sun may be seen for less time than brute force knows, and then
-/// takes what is up to a step beside it for the same.
+/// Bisection: as blind as its coarse suns are far apart, but what it finds it finds to a second. A whole step blind,
+/// not half: it looks at the very end of a spell, where the sun may be seen for less time than brute force knows, and
+/// then takes what is up to a step beside it for the same.
 pub const BISECT: Candidate = Candidate {
     make: |tracer, lanes| Box::new(BisectEngine::new(tracer, lanes, 64, 1.0)),
     blind_t: 1.0 / 63.0,
@@ -36,7 +36,7 @@ pub const BISECT: Candidate = Candidate {
     own_suns: None,
 };
 
-/// The engine that is to find everything.
+/// The engine that finds every interval.
 pub const EXACT: Candidate = Candidate {
     make: |tracer, lanes| Box::new(ExactEngine::new(tracer, lanes)),
     blind_t: 0.0,
@@ -44,7 +44,7 @@ pub const EXACT: Candidate = Candidate {
     own_suns: None,
 };
 
-/// Whether it misses nothing at all, however short.
+/// Whether the exact engine misses no interval, however short.
 pub const FINDS_ALL: bool = EXACT.blind_t == 0.0;
 
 /// All of them.
@@ -52,8 +52,9 @@ pub const ALL: [Candidate; 3] = [RAYS, BISECT, EXACT];
 
 /// Suns of brute force in cases made by code.
 pub const SUNS: usize = 4096;
-/// What looks wrong is looked at again with so many times more suns: a spell between two suns may be there. (One that is
-/// shorter still and yet meets a ray is rare: one in 20,000 random cases, with [`RAYS`], which have suns of their own.)
+/// What looks wrong is looked at again with so many times more suns: a spell between two suns may be there. (One that
+/// is shorter still and yet meets a ray is rare: one in 20,000 random cases, with [`RAYS`], which have suns of their
+/// own.)
 const CLOSER: usize = 512;
 
 /// Seconds of a path's clock, in `t`.
@@ -67,7 +68,7 @@ impl Candidate {
         lit_at((self.make)(&here.tracer, std::slice::from_ref(path)).as_ref(), point).swap_remove(0)
     }
 
-    /// What is wrong with what it finds for a point, if anything is.
+    /// Describes what is wrong with the engine's answer for a point, if anything is.
     pub fn complaint(&self, here: &Traced, path: &SunPath, point: &SurfacePoint, truth: &[bool]) -> Option<String> {
         let found = self.lit(here, path, point);
         if self.keeps_its_word(path, &found, truth) {
@@ -105,13 +106,13 @@ fn lasting(found: &Intervals, shortest_t: f64) -> Intervals {
     Intervals::from_unsorted(joined)
 }
 
-/// Every engine must keep its word about these points.
+/// Asserts that every engine is as accurate as it claims at these points.
 #[track_caller]
 pub fn all_must_agree(case: &str, here: &Traced, path: &SunPath, points: &[SurfacePoint]) {
     must_agree(&ALL, case, here, path, points);
 }
 
-/// These engines must keep their word about these points.
+/// Asserts that these engines are as accurate as they claim at these points.
 #[track_caller]
 pub fn must_agree(engines: &[Candidate], case: &str, here: &Traced, path: &SunPath, points: &[SurfacePoint]) {
     let oracle = Oracle::new(here, path, SUNS);

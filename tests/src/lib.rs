@@ -1,4 +1,5 @@
-//! What the hard-case tests share: scenes by code, points on them, suns, and oracles that are not the code under test.
+//! Helpers of the tests: scenes made by code, points on them, suns, and oracles that share no code with the code
+//! under test.
 
 mod agreement;
 pub mod ambient;
@@ -91,7 +92,7 @@ pub fn over_the_top(from: DVec3) -> SunPath {
     })
 }
 
-/// A sun that all but stands still in one direction.
+/// A sun that stands nearly still in one direction.
 pub fn standing(direction: DVec3) -> SunPath {
     let zero = direction.normalize();
     path_of(SunArc {
@@ -108,13 +109,13 @@ pub fn path_of(arc: SunArc) -> SunPath {
     SunPath::new(vec![arc], 0.0, 720.0).expect("the arc is well formed")
 }
 
-/// How many of something a test tries: as many as an environment variable says, or else these.
+/// The number that an environment variable gives, or a default.
 pub fn asked_for(variable: &str, ordinarily: usize) -> usize {
     let asked = std::env::var(variable).ok();
     asked.map_or(ordinarily, |text| text.parse().unwrap_or_else(|_| panic!("{variable}={text} is no number")))
 }
 
-/// Turns triangles over.
+/// The triangles with their winding reversed.
 pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
     triangles.iter().map(|&[a, b, c]| [a, c, b]).collect()
 }
@@ -187,8 +188,8 @@ fn are_near(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     a.len() == b.len() && both.map(|(a, b)| (a - b).abs()).all(|off_t| off_t <= 1.001 * CODE_STEP_T)
 }
 
-/// The file of a command, `sunbake` or `sunplay`. Where the whole workspace was built, as `tests/run` does, it lies beside the
-/// tests' folder. Else cargo builds it first.
+/// The file of a command, `sunbake` or `sunplay`. Where the whole workspace was built, as `tests/run` does, it lies
+/// beside the tests' folder. Else cargo builds it first.
 pub fn built_program(name: &str) -> PathBuf {
     let mut folder = std::env::current_exe().expect("a test has a file");
     folder.pop();

@@ -1,8 +1,8 @@
 //! Tests that need what a machine may lack: shared scenes, a browser, a validator.
 //!
-//! Such tests live in a binary with a harness of its own (`tests/scenes`, `tests/browser`). Where something is absent the
-//! harness lists the test as ignored, so that the runner's summary counts it as skipped. Run all the same, it fails and says
-//! what is absent: it never passes.
+//! Such tests live in a binary with a harness of its own (`tests/scenes`, `tests/browser`). Where something is absent
+//! the harness lists the test as ignored, so that the runner's summary counts it as skipped. Run all the same, it
+//! fails and says what is absent: it never passes.
 
 use libtest_mimic::Trial;
 use std::path::{Path, PathBuf};
@@ -17,8 +17,8 @@ pub struct Need {
 }
 
 impl Need {
-    /// A file or folder of the shared folder, such as `scenes/pc_house/house.glb`. With `SUNBAKE_REQUIRE_SCENES=1`, a test
-    /// without it fails.
+    /// A file or folder of the shared folder, such as `scenes/pc_house/house.glb`. With `SUNBAKE_REQUIRE_SCENES=1`, a
+    /// test without it fails.
     pub fn shared(name: &str) -> Self {
         let path = shared(name);
         Self {
@@ -34,7 +34,8 @@ impl Need {
         Self::tool(names.iter().any(|name| answers(name)), format!("none of {names:?} is installed"))
     }
 
-    /// The Khronos glTF validator, with the `node` that runs it. With `SUNBAKE_REQUIRE_TOOLS=1`, a test without it fails.
+    /// The Khronos glTF validator, with the `node` that runs it. With `SUNBAKE_REQUIRE_TOOLS=1`, a test without it
+    /// fails.
     pub fn validator() -> Self {
         let package = validator_folder().join("node_modules/gltf-validator");
         let is_there = package.is_dir() && answers("node".as_ref());
@@ -83,7 +84,8 @@ pub fn gas_station() -> PathBuf {
     workspace().join("assets/gas_station.glb")
 }
 
-/// A path in the shared folder, whether it is there or not: below `SUNBAKE_SHARED`, or below `shared` beside the repository.
+/// A path in the shared folder, whether it is there or not: below `SUNBAKE_SHARED`, or below `shared` beside the
+/// repository.
 pub fn shared(name: &str) -> PathBuf {
     let beside = || workspace().join("../shared");
     std::env::var_os("SUNBAKE_SHARED").map_or_else(beside, PathBuf::from).join(name)

@@ -1,14 +1,14 @@
 //! Brute force in `f64`: which of many suns a point sees, asked of every triangle.
 //!
-//! Theory: a sun is seen if it is above the horizon and before the surface, and no triangle meets the ray towards it. The
-//! triangle test is "Fast, Minimum Storage Ray/Triangle Intersection" (Moeller and Trumbore, *Journal of Graphics Tools*
-//! 2(1), 1997), on the `f32` corners in bake space. It shares no code and no hierarchy with the tracer, and starts where
-//! the tracer says that its shadow rays start: at [`Tracer::lift`], and [`Tracer::run_up_m`] back.
+//! Theory: a sun is seen if it is above the horizon and before the surface, and no triangle meets the ray towards it.
+//! The triangle test is "Fast, Minimum Storage Ray/Triangle Intersection" (Moeller and Trumbore, *Journal of Graphics
+//! Tools* 2(1), 1997), on the `f32` corners in bake space. It shares no code and no hierarchy with the tracer, and
+//! starts where the tracer says that its shadow rays start: at [`Tracer::lift`], and [`Tracer::run_up_m`] back.
 //!
-//! Practice: a thousand points, 65,536 suns and 600,000 triangles are too many for each with each. But a triangle lies in
-//! a ball, a ball in a cone of directions, and that cone meets an arc of the sun in one window of hour angles; only suns in
-//! the window, and not yet dark, are tested. Triangles with wide windows are quartered for tighter ones. Windows are
-//! enlarged by more than rounding, so leaving them out changes no answer.
+//! Practice: a thousand points, 65,536 suns and 600,000 triangles are too many for each with each. But a triangle
+//! lies in a ball, a ball in a cone of directions, and that cone meets an arc of the sun in one window of hour
+//! angles; only suns in the window, and not yet dark, are tested. Triangles with wide windows are quartered for
+//! tighter ones. Windows are enlarged by more than rounding, so leaving them out changes no answer.
 //!
 //! Departures: the triangle is grown by a part in 10^12, so that no sun slips through a shared edge.
 //!

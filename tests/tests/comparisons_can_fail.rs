@@ -1,5 +1,5 @@
-//! A comparison is worth something only if it fails where it should. Each way in which a set can be wrong is made, and the
-//! comparer's numbers have to show it.
+//! A comparison must be able to fail. Sets are broken in each way that a set can be wrong, and the comparer's numbers
+//! have to show it.
 
 use image::{ImageBuffer, Rgba};
 use std::path::Path;
@@ -9,7 +9,7 @@ use sunbake_tests::compared::{PLAYED, TRUE, bake_into, compared, mean_error, pos
 
 type Texels = ImageBuffer<Rgba<u16>, Vec<u16>>;
 
-/// A set, a defect, and how many times the sound set's mean error the broken one's has to be.
+/// Asserts that a defect raises a set's mean error at least so many times.
 fn assert_caught(defect: &str, least: f64, spoil: impl Fn(&Path)) {
     let desk = tempfile::tempdir().unwrap();
     bake_into(desk.path(), "set", &posts(0.0), |settings| settings);

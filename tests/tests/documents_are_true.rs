@@ -1,5 +1,5 @@
-//! Documents: links resolve, lengths and widths are bounded, the format names every field, the code for engines is the code
-//! that is tested, and no renamed word is left.
+//! Documents: links resolve, lengths and widths are bounded, the format names every field, the code for engines is
+//! the code that is tested, and no renamed word is left.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! `HARD_CASES.md` says what is true: every test that it links exists and names its code, and every code without a test stands
-//! under "Open".
+//! `HARD_CASES.md` says what is true: every test that it links exists and names its code, and every code without a
+//! test stands under "Open".
 
 use std::collections::BTreeSet;
 use std::path::Path;

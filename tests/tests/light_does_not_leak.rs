@@ -1,5 +1,5 @@
-//! Hard cases B1, B5, B6, B8 and B10 at the level of single points: what a shadow ray may and may not see, by rays and by
-//! the exact engine.
+//! Hard cases B1, B5, B6, B8 and B10 at the level of single points: what a shadow ray may and may not see, by rays
+//! and by the exact engine.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Material;
@@ -35,7 +35,8 @@ fn no_sun_at_or_below_the_horizon_lights_anything() {
     }
 }
 
-/// B6: the floor behind a wall is lit just from when the sun stands above the wall's top, at any distance from its foot.
+/// B6: the floor behind a wall is lit just from when the sun stands above the wall's top, at any distance from its
+/// foot.
 #[test]
 fn light_does_not_leak_under_a_wall_at_any_distance_or_height() {
     let (height, thickness) = (2.0, 0.2);
@@ -118,8 +119,8 @@ fn the_ground_under_a_slab_is_dark_up_to_its_edge() {
     }
 }
 
-/// B5: a face lying on the ground, a millimetre or a tenth of one above it, hides it but for the sun that shines in under
-/// the gap. At no distance at all neither of the two is on top, and both keep their light, without speckle.
+/// B5: a face lying on the ground, a millimetre or a tenth of one above it, hides it but for the sun that shines in
+/// under the gap. At no distance at all neither of the two is on top, and both keep their light, without speckle.
 #[test]
 fn a_face_lying_on_the_ground_hides_it_up_to_its_edge() {
     let path = over_the_top(DVec3::X);

@@ -1,5 +1,5 @@
-//! The libraries serve a crate outside the workspace that takes none of their default features: it bakes a box in memory, and
-//! draws it into a texture of its own device. Needs a GPU adapter, and fails without one.
+//! The libraries serve a crate outside the workspace that takes none of their default features: it bakes a box in
+//! memory, and draws it into a texture of its own device. Needs a GPU adapter, and fails without one.
 
 use std::collections::BTreeMap;
 use std::path::Path;

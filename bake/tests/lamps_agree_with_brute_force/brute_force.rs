@@ -1,9 +1,10 @@
-//! Brute force in `f64` that shares no code with what it checks: "Fast, Minimum Storage Ray/Triangle Intersection" (Moeller
-//! and Trumbore, *Journal of Graphics Tools* 2(1), 1997) against every triangle, for evenly spaced positions of the lamp.
+//! Brute force in `f64` that shares no code with what it checks: "Fast, Minimum Storage Ray/Triangle Intersection"
+//! (Moeller and Trumbore, *Journal of Graphics Tools* 2(1), 1997) against every triangle, for evenly spaced positions
+//! of the lamp.
 //!
-//! It follows the documentation of shadow rays: they start at [`Tracer::lift`], minus [`Tracer::run_up_m`], and end the
-//! run-up before the lamp, measured square to the surface that they meet. An engine may disagree about a position only if
-//! brute force, or the engine, changes its answer within one step of it: then one edge or two are that near.
+//! It follows the documentation of shadow rays: they start at [`Tracer::lift`], minus [`Tracer::run_up_m`], and end
+//! the run-up before the lamp, measured square to the surface that they meet. An engine may disagree about a position
+//! only if brute force, or the engine, changes its answer within one step of it: then one edge or two are that near.
 
 use glam::{DVec2, DVec3};
 use sunbake::atlas::SurfacePoint;
@@ -110,7 +111,8 @@ impl Here {
     }
 }
 
-/// Distance and weights of the second and third corner; grown by a part in 10^12, so that nothing slips through an edge.
+/// Distance and weights of the second and third corner; grown by a part in 10^12, so that nothing slips through an
+/// edge.
 fn met([a, b, c]: [DVec3; 3], start: DVec3, way: DVec3) -> Option<(f64, [f64; 2])> {
     const GROWTH: f64 = 1e-12;
     let (ab, ac) = (b - a, c - a);
@@ -135,8 +137,8 @@ pub fn unexplained(seen: &[bool], answer: &Intervals) -> Vec<usize> {
     (0..STEPS).filter(|&step| answer.contains(t(step)) != seen[step] && !is_at_edge(step)).collect()
 }
 
-/// A moment of every lit and every dark spell, but for those too short for the oracle's growth. Not the middle, in which
-/// a path that is its own mirror image may touch a surface.
+/// A moment of every lit and every dark spell, but for those too short for the oracle's growth. Not the middle, in
+/// which a path that is its own mirror image may touch a surface.
 pub fn moments(answer: &Intervals) -> Vec<f64> {
     let mut ends: Vec<f64> = answer.as_slice().iter().flatten().copied().collect();
     ends.insert(0, 0.0);

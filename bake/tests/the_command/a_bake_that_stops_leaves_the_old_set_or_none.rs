@@ -1,4 +1,4 @@
-//! Killed, interrupted, terminated: the old set or none, and after what can be caught nothing else.
+//! A bake that is killed leaves the old set or none. One that is interrupted or terminated also removes its own files.
 #![cfg(unix)]
 
 use super::tools::Desk;

@@ -1,4 +1,4 @@
-//! Ambient occlusion, bent normals, the sky and vertices, as their flags ask for them.
+//! Ambient occlusion, bent normals, the sky and vertices: which flag writes which file.
 
 use super::tools::{Desk, Run, names};
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ fn gltf(file: &Path) -> Value {
     serde_json::from_slice(&bytes[20..20 + length]).expect("JSON")
 }
 
-/// A small bake of ambient light alone, with arguments more.
+/// A small bake of ambient light alone, with further arguments.
 fn bake_ao(desk: &Desk, more: &[&str]) -> Run {
     let usual = ["bake", "floor.glb", "-o", "out/set", "--preset=draft", "--size=64", "--only=ao", "--threads", "1"];
     desk.run(&[&usual[..], more].concat())

@@ -1,4 +1,4 @@
-//! `sunbake cost`: a report that holds what it promises, and says what it does not hold.
+//! `sunbake cost`: what a report holds, and that it names what was not measured.
 
 use super::tools::{Desk, Run, names};
 use serde_json::Value;
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A look at `floor.glb` in ten seconds, with arguments more.
+/// Measures `floor.glb` within ten seconds, with further arguments.
 fn cost(desk: &Desk, more: &[&str]) -> Run {
     let usual = ["cost", "floor.glb", "-o", "out/report", "--budget=10", "--size=64", "--threads=1"];
     desk.run(&[&usual[..], more].concat())
@@ -17,7 +17,7 @@ fn rows(report: &Value) -> Vec<Value> {
     sweeps.iter().flat_map(|sweep| sweep["rows"].as_array().unwrap().clone()).collect()
 }
 
-/// What the published schema says of it, by a validator that knows nothing of ours.
+/// Checks a report against the published schema with a validator that shares no code with ours.
 fn validate(report: &Value) {
     let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/cost.schema.json");
     let mut schemas = boon::Schemas::new();

@@ -44,7 +44,7 @@ fn set<const N: usize>(names: [&str; N]) -> BTreeSet<String> {
     names.map(str::to_owned).into()
 }
 
-/// [`LEAST`] with one argument in another's place, or one more.
+/// [`LEAST`] with one argument replaced or added, and further ones.
 fn with<'a>(argument: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     let key = |argument: &'a str| argument.split('=').next();
     let others = LEAST.into_iter().filter(|least| key(least) != key(argument));
@@ -90,7 +90,7 @@ fn each_effect_adds_its_own_files_and_nothing_else() {
     adds("--lamp=lamp.json", &[], &["lamp-intervals"], &lamp);
     adds("--bits=16", &[], &["16-bit-times"], &[]);
     adds("--loss-map", &[], &["loss-map"], &["lost_minutes.0.exr", "lost_minutes.0.png"]);
-    // Room for layers that no texel needs is none.
+    // A higher cap adds no layers where no texel needs them.
     adds("--layers=4", &[], &[], &[]);
     adds(both, &[], &["ambient-occlusion"], &[ao]);
     adds(both, &["--ao-distance=1"], &["ambient-occlusion", "ambient-distance"], &[ao]);

@@ -1,10 +1,10 @@
-//! Bad input, case by case: one line that names the cause and the next step, the right exit code, nothing left behind.
+//! Bad input, case by case: one line that names the cause and the next step, the right exit code, and no files left.
 
 use super::tools::{Desk, Run, floor, floor_bytes, gas_station, glb};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
-/// Longest that any refusal may take.
+/// The longest time that a refusal may take.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The floor with something changed.

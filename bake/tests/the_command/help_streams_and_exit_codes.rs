@@ -1,4 +1,4 @@
-//! Help, streams, exit codes of ordinary use.
+//! Help, standard output and error, exit codes of ordinary use.
 
 use super::tools::{Desk, Run};
 use std::process::Stdio;

@@ -1,11 +1,12 @@
-//! `--lamp`, and `--path` with positions: what they add to a set, and what they refuse.
+//! `--lamp`, and `--path` with positions: what they add to a set, and which values are refused.
 
 use super::tools::{Desk, names};
 use serde_json::{Value, json};
 
 /// Rises through the floor at t = 0.25.
 const RISING: &str = r#"{"radius_m": 0.1, "duration_min": 8, "keys": [
-    {"t": 0, "position": [0.5, -1, 0.5]}, {"t": 0.5, "position": [0.5, 1, 0.5]}, {"t": 1, "position": [0.5, 2, 0.5]}]}"#;
+    {"t": 0, "position": [0.5, -1, 0.5]}, {"t": 0.5, "position": [0.5, 1, 0.5]},
+    {"t": 1, "position": [0.5, 2, 0.5]}]}"#;
 
 const EXACT: [&str; 6] = ["bake", "floor.glb", "-o", "out/set", "--preset=draft", "--size=64"];
 

@@ -80,7 +80,7 @@ impl Desk {
         Run::of(&mut self.command(arguments))
     }
 
-    /// A small bake of `floor.glb` into `out/set`, with arguments more.
+    /// A small bake of `floor.glb` into `out/set`, with further arguments.
     pub fn bake(&self, more: &[&str]) -> Run {
         self.run(&[&SMALL_BAKE[..], more].concat())
     }

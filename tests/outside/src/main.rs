@@ -1,5 +1,6 @@
-//! A box on a floor, baked in memory and drawn from above into a texture of a device of our own. Prints the brightness of
-//! three pixels of the floor: in the box's shadow, as far from the box on its other side, and far from both.
+//! A box on a floor, baked in memory and drawn from above into a texture of a device of our own. Prints the
+//! brightness of three pixels of the floor: in the box's shadow, as far from the box on its other side, and far from
+//! both.
 
 use sunbake::progress::Silent;
 use sunbake::scene::{LoadLimits, load};

@@ -81,7 +81,8 @@ fn a_picket_fence_reports_what_one_layer_loses() {
 #[test]
 fn no_texel_before_a_wall_is_lit_too_early_at_any_density() {
     let folder = temporary();
-    let keys = r#"{"keys": [{"azimuth_deg": 270, "elevation_deg": 0}, {"azimuth_deg": 0, "elevation_deg": 90}, {"azimuth_deg": 90, "elevation_deg": 0}]}"#;
+    let keys = r#"{"keys": [{"azimuth_deg": 270, "elevation_deg": 0}, {"azimuth_deg": 0, "elevation_deg": 90},
+        {"azimuth_deg": 90, "elevation_deg": 0}]}"#;
     let height = 2.0;
     for (kind, thickness) in [("block", 0.2), ("sheet", 0.0f32)] {
         let wall = match thickness > 0.0 {

@@ -5,8 +5,8 @@ use glam::DVec3;
 use sunbake::texels::draw;
 use sunbake_tests::{CODE_STEP_T, bake_scene, quick};
 
-/// An oracle of its own: f64 Moeller-Trumbore over all triangles, the sun from the manifest's own numbers. Each stored time
-/// is the edge of a shadow to a code step, and what is stored between them is right.
+/// An oracle of its own: f64 Moeller-Trumbore over all triangles, the sun from the manifest's own numbers. Each
+/// stored time is the edge of a shadow to a code step, and what is stored between them is right.
 #[test]
 fn stored_times_agree_with_brute_force_within_a_code_step() {
     const MOMENTS: usize = 1024;

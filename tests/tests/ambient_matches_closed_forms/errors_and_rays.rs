@@ -82,7 +82,8 @@ fn a_hard_texel_among_easy_ones_gets_its_rays() {
         let hard: Vec<f64> = found.iter().skip(7).step_by(16).map(|open| (open - truth).abs()).collect();
         let within = hard.iter().filter(|off| **off <= error).count() as f64 / hard.len() as f64;
         println!("to {error}: {within:.3} of the hard ones are within");
-        // One draw of the error, or two, are all that tells a lone one: pooling over its neighbours alone kept 59 of 100.
+        // One draw of the error, or two, are all that tells a lone one: pooling over its neighbours alone kept 59 of
+        // 100.
         assert!(within >= 0.8, "{within} within {error}");
     }
 }

@@ -36,7 +36,8 @@ fn b10_around_a_stone(scene: &Scene, supersample: u32) {
         if is_top && outside < -1.5 * texel_m {
             assert_eq!(ao(texel), 0.0, "buried at {x}, {z}");
         } else if is_top && outside > -0.95 * texel_m && outside < 1.5 * texel_m {
-            // Beside the stone, on both sides of its border: what the ground there sees, never the dark beneath.
+            // Beside the stone, on both sides of its border, the ground's own value shows, never the dark beneath the
+            // stone.
             assert!(ao(texel) > 0.4, "{} at {x}, {z}, {outside} outside", ao(texel));
         }
     }

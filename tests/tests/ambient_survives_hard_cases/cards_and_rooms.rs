@@ -66,9 +66,9 @@ fn a_windowless_room_is_black_and_with_a_distance_only_its_corners_are_dark() {
     let table = block(Vec3::new(-0.5, 0.0, -0.4), Vec3::new(0.5, 0.8, 0.4));
     let scene = SceneBuilder::new().soup(&room).soup(&table).build();
     let (set, texels) = bake(&scene, &settings());
-    // But for the table's own underside, which lies in the floor and looks out of the house.
+    // Except the table's underside, which lies in the floor and faces out of the room.
     assert!(texels.iter().all(|texel| ao(texel) == 0.0 || (texel.position[1] == 0.0 && texel.normal[1] < 0.0)));
-    // The floor under the table and the table's foot are inside a solid; no wall is taken to be.
+    // The floor under the table and the table's foot are inside a solid. No wall is.
     let buried = set.manifest.ambient.unwrap().buried_texels as f64 / texels.len() as f64;
     let request = AmbientRequest::with_rays(256);
     let near = AmbientRequest { estimate: AmbientSettings { distance_m: Some(0.5), ..request.estimate }, ..request };

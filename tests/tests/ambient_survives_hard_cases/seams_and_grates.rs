@@ -1,4 +1,4 @@
-//! What lies between texels: cuts between charts, and bars much finer than a texel.
+//! Detail below a texel: cuts between charts, and bars much finer than a texel.
 
 use crate::{ao, bake, baked, ball, front, ground, settings};
 use glam::{DMat4, DVec2, Vec2, Vec3};
@@ -8,7 +8,7 @@ use sunbake::testing::{SceneBuilder, block, floor, opaque};
 
 #[test]
 fn supersampling_averages_over_a_texel() {
-    // Beneath a grate much finer than texels, single points see bars or gaps by chance.
+    // Below a grate much finer than texels, a single point sees a bar or a gap by chance.
     let bars: Vec<[Vec3; 3]> = (-20..20)
         .flat_map(|i| floor(Vec2::new(i as f32 * 0.1, -2.0), Vec2::new(i as f32 * 0.1 + 0.05, 2.0), 0.02))
         .collect();
@@ -81,7 +81,7 @@ fn no_seam_shows_where_charts_meet() {
     apart.sort_by(f64::total_cmp);
     let (p99, worst) = (apart[apart.len() * 99 / 100], apart[apart.len() - 1]);
     println!("{} points on cuts: 99 % within {p99:.4}, worst {worst:.4}", apart.len());
-    // Three codes of 8 bits, as an eye would have it, and five of noise at the very worst.
+    // Three codes of 8 bits, which the eye does not see, and five more of noise at the worst point.
     assert!(apart.len() > 500 && p99 < 3.0 / 255.0 && worst < 8.0 / 255.0, "{} {p99} {worst}", apart.len());
     let told = &set.manifest.ambient.as_ref().unwrap().seams;
     assert!(told.mean < 0.5 * told.mean_before, "{told:?}");

@@ -61,8 +61,8 @@ fn b8_a_ball_of_80_facets_has_no_terminator() {
     };
     let points: Vec<AmbientPoint> = (0..80 * 64).map(point).collect();
     let found = ambient_visibility(&traced, &points, rays(256));
-    // A convex thing on endless ground sees the sky by its normal alone. What facets leave out of the count is
-    // least where they lie level, and within a facet's own tilt everywhere.
+    // On endless ground the visibility of a convex solid depends on its normal alone. The error of facets is least
+    // where they are level, and is bounded by a facet's tilt.
     for (point, open) in points.iter().zip(found) {
         let expected = (1.0 + point.shading_normal.y) / 2.0;
         assert!((open - expected).abs() < 0.06, "{open} for {expected}");

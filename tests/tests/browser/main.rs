@@ -1,5 +1,5 @@
-//! Reports in a real browser. The harness is not the usual one: without Chromium every test is listed as ignored, and counted
-//! as skipped.
+//! Reports in a real browser. The harness is not the usual one: without Chromium every test is listed as ignored, and
+//! counted as skipped.
 
 mod compare_reports_work;
 mod reports_work;

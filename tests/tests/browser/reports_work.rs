@@ -1,5 +1,6 @@
-//! The page of a report: its controls do what they say, its canvas shows the pictures that it holds, light and colours are
-//! those of the renderer, and nothing comes from the network. The probe is shown able to fail: each fault is caught.
+//! The page of a report: its controls do what they say, its canvas shows the pictures that it holds, light and
+//! colours are those of the renderer, and nothing comes from the network. The probe is shown able to fail: each fault
+//! is caught.
 
 use glam::Vec3;
 use image::codecs::png::PngEncoder;
@@ -98,7 +99,10 @@ fn pictures() -> Value {
 /// What the renderer's own code makes of the same numbers.
 fn expected() -> Value {
     let shown = |[camera, time]: [usize; 2]| {
-        let of = |mode: &str, codes: Vec<[u8; 3]>| json!({ "camera": camera, "time": time, "left": time, "right": "reference", "mode": mode, "codes": codes });
+        let of = |mode: &str, codes: Vec<[u8; 3]>| {
+            let (left, right) = (time, "reference");
+            json!({ "camera": camera, "time": time, "left": left, "right": right, "mode": mode, "codes": codes })
+        };
         let share = |by| visibility(&seen(camera, time, by));
         let [left, reference] = [time + 1, 0].map(share);
         [

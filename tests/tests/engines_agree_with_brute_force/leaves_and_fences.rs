@@ -1,4 +1,4 @@
-//! B13 to B15 as far as finding times goes: cut-out leaves, many intervals, the path's ends.
+//! B13 to B15 for the interval query: alpha-masked leaves, many intervals, the path's ends.
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
@@ -53,8 +53,8 @@ fn a_leaf_casts_its_cut_out() {
     assert!(edges > 700, "the leaf has hardly any holes: {edges}");
 }
 
-/// What hid the sun from a neighbour is tried first, so that leaves are followed along other stretches than from a point
-/// that is asked alone: the answer is the same, to the last bit.
+/// What hid the sun from a neighbour is tried first, so that leaves are followed along other stretches than from a
+/// point that is asked alone: the answer is the same, to the last bit.
 #[test]
 fn neighbours_change_no_answer_under_a_leaf() {
     for (seed, wrap) in [(5, Wrap::Repeat), (6, Wrap::Clamp), (7, Wrap::Mirror)] {

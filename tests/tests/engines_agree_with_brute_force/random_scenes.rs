@@ -1,5 +1,5 @@
-//! Random triangles, points and paths, as many as `SUNBAKE_CASES` says. The first are for every engine, the rest for the
-//! exact one alone: it claims the most.
+//! Random triangles, points and paths, as many as `SUNBAKE_CASES` says. The first are for every engine, the rest for
+//! the exact one alone: it claims the most.
 
 use glam::{DVec3, Vec3};
 use sunbake::testing::SceneBuilder;

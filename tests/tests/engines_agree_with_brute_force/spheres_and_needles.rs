@@ -42,7 +42,8 @@ fn inside(here: &Traced, random: &mut Random) -> SurfacePoint {
     here.observer(random.cube() * 0.57, random.direction(), PEDESTAL)
 }
 
-/// I1: a hundred thousand points, of which every hundred share a path: neighbours seed each other, as they do in a bake.
+/// I1: a hundred thousand points, of which every hundred share a path: neighbours seed each other, as they do in a
+/// bake.
 #[test]
 fn no_light_enters_a_closed_sphere_at_any_of_very_many_points() {
     let mut random = Random::new(9);

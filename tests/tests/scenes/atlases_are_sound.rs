@@ -28,7 +28,8 @@ fn valid_coordinates_of_the_file_are_kept(file: &Path) {
     }
 }
 
-/// B16: the house's `TEXCOORD_1` was made for light maps, but two islands lie on top of others: 1.4 % of the area of one mesh.
+/// B16: the house's `TEXCOORD_1` was made for light maps, but two islands lie on top of others: 1.4 % of the area of
+/// one mesh.
 fn overlapping_coordinates_are_made_anew(file: &Path) {
     let CheckedAtlas { atlas, .. } = bake_and_check(&open(file), &settings(1024));
     assert!(atlas.layouts.iter().all(|l| l.origin == LayoutOrigin::Unwrapped));

@@ -1,7 +1,7 @@
 //! Hard case I7: random texels of real scenes, against brute force in `f64` with 65,536 suns a path.
 //!
-//! Nine texels a scene by default. `SUNBAKE_TEXELS=1000 tests/run scenes -E 'test(brute_force)' --no-capture` tries a thousand,
-//! and prints a line a scene.
+//! Nine texels a scene by default. `SUNBAKE_TEXELS=1000 tests/run scenes -E 'test(brute_force)' --no-capture` tries a
+//! thousand, and prints a line a scene.
 
 use libtest_mimic::Trial;
 use std::path::Path;
@@ -76,7 +76,8 @@ fn random_texels_agree_with_brute_force(file: &Path) {
     let started = Instant::now();
     let found = compare(&Traced::new(scene), asked_for("SUNBAKE_TEXELS", 9));
     println!(
-        "{name}: {} texels, {} k suns, {} edges; they disagree about {} suns beside an edge, {} elsewhere, {} spells; {:.1} s",
+        "{name}: {} texels, {} k suns, {} edges; disagreement about {} suns beside an edge, {} elsewhere, {} intervals; \
+         {:.1} s",
         found.points,
         found.suns >> 10,
         found.edges,

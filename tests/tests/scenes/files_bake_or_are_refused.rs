@@ -1,5 +1,6 @@
-//! The command bakes every file at draft quality, or refuses it: no panic, no hang, at most 4 GiB of memory. What it writes
-//! passes the Khronos validator. A table says what each file came to. Needs `ulimit`, so it runs on Unix alone.
+//! The command bakes every file at draft quality, or refuses it: no panic, no hang, at most 4 GiB of memory. What it
+//! writes passes the Khronos validator. A table says what each file came to. Needs `ulimit`, so it runs on Unix
+//! alone.
 
 use crate::scene_files;
 use libtest_mimic::Trial;

@@ -1,5 +1,5 @@
-//! Every file of the Khronos validator's test corpus, and every shared scene, is loaded without a panic; and what loads is
-//! written as `scene.glb` and read back as the same scene.
+//! Every file of the Khronos validator's test corpus, and every shared scene, is loaded without a panic; and what
+//! loads is written as `scene.glb` and read back as the same scene.
 //!
 //! With `SUNBAKE_KEEP_GLB` set to a folder, the written files stay there, for the Khronos validator to look at.
 
@@ -101,7 +101,8 @@ fn shared_scenes_load_or_are_refused(folder: &Path) {
             Ok(scene) => {
                 let seconds = start.elapsed().as_secs_f64();
                 println!(
-                    "{name}: {} triangles, {} meshes, {} instances, {} materials, {} images, {:?}, {seconds:.2} s, size {} at {}",
+                    "{name}: {} triangles, {} meshes, {} instances, {} materials, {} images, {:?}, {seconds:.2} s, \
+                     size {} at {}",
                     scene.triangle_count(),
                     scene.meshes.len(),
                     scene.instances.len(),

@@ -1,5 +1,5 @@
-//! Playback on the GPU against its twin on the CPU, at eight times of day: 99.9 % of the pixels differ by at most 1/255, and
-//! the rest lie at edges.
+//! Playback on the GPU against its twin on the CPU, at eight times of day: 99.9 % of the pixels differ by at most
+//! 1/255, and the rest lie at edges.
 
 use libtest_mimic::Trial;
 use std::path::Path;
@@ -48,8 +48,8 @@ fn twins_agree(scene: &Path, page_size_texels: u32) {
     }
 }
 
-/// Scenes, with the edge of a page in texels that they need: a model railway's town, a truck and its town, a garden bridge, a
-/// city with leaves.
+/// Scenes, with the edge of a page in texels that they need: a model railway's town, a truck and its town, a garden
+/// bridge, a city with leaves.
 const SHARED: [(&str, u32); 4] = [
     ("littlest_tokyo/littlest_tokyo.glb", 2048),
     ("truck_town/truck_town.glb", 512),

@@ -1,8 +1,10 @@
-//! Shadow maps against truth on real scenes: four times of day (twelve at full size), six cameras, two of them in shadow.
+//! Shadow maps against truth on real scenes: four times of day (twelve at full size), six cameras, two of them in
+//! shadow.
 //!
 //! What each variant gets wrong may be a tenth more than what is written down, a line a measurement, in
-//! `shadow_maps_match_truth.txt` or, at full size, in `shadow_maps_match_truth_full.txt`. A measurement without a line fails;
-//! `BLESS=1` writes the lines anew. On our own scene the recommended variants have neither acne nor leaks, whatever is written.
+//! `shadow_maps_match_truth.txt` or, at full size, in `shadow_maps_match_truth_full.txt`. A measurement without a
+//! line fails; `BLESS=1` writes the lines anew. On our own scene the recommended variants have neither acne nor
+//! leaks, whatever is written.
 
 use crate::{is_full, june, times};
 use libtest_mimic::Trial;

@@ -1,8 +1,8 @@
-//! Shadow volumes against hard truth on real scenes: four times of day (twelve at full size), six cameras, two of them inside
-//! a volume.
+//! Shadow volumes against hard truth on real scenes: four times of day (twelve at full size), six cameras, two of
+//! them inside a volume.
 //!
-//! Outside a band of one pixel around truth's edges every pixel must be right. What rasterising cannot help is counted apart
-//! and kept rare: see [`MaskAgreement`]. Leaves are solid here, since volumes do not see alpha masks.
+//! Outside a band of one pixel around truth's edges every pixel must be right. What rasterising cannot help is
+//! counted apart and kept rare: see [`MaskAgreement`]. Leaves are solid here, since volumes do not see alpha masks.
 
 use crate::{june, times};
 use libtest_mimic::Trial;
