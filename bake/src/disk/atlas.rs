@@ -1,4 +1,4 @@
-//! The atlas of a set that was baked before: its manifest says where instances lie, its scene holds their coordinates.
+//! Restores the atlas of a baked set: placements from its manifest, texture coordinates from its scene.
 
 use super::manifest::{InstanceEntry, Manifest};
 use crate::atlas::{Atlas, Layout, PageSize, Placement};

@@ -1,42 +1,42 @@
-//! A folder that is written whole or not at all: a set, or a report.
+//! Writes a folder completely or not at all: a set, or a report.
 //!
-//! Everything goes into a folder beside the target, under a name that nothing reads; [`FolderWriter::finish`] renames it
-//! into place. What stops before that, for whatever reason, leaves the old folder or none.
+//! Files are written into a temporary folder beside the target; [`FolderWriter::finish`] renames it into place. A
+//! program that stops earlier, for whatever reason, leaves the old folder or none.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// How the folder of something unfinished is called, after a dot and the target's name.
+/// Suffix of the temporary folder's name, after a dot and the target's name.
 const PARTIAL_SUFFIX: &str = ".sunbake-partial";
 
 /// What kind of folder is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FolderKind {
-    /// Name of the file that tells an older folder of this kind, which `--force` may replace.
+    /// Name of a file that identifies an older folder of this kind. Only such a folder may be replaced.
     pub marker: &'static str,
-    /// What to call it, as `a baked set`.
+    /// For messages, with an article: `a baked set`.
     pub what: &'static str,
-    /// The same in one word, as `set`.
+    /// For messages, in one word: `set`.
     pub noun: &'static str,
 }
 
 /// Why a folder could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
-    /// The target is there already.
+    /// The target exists already.
     #[error("{} exists", target.display())]
     Exists {
         /// The target.
         target: PathBuf,
     },
-    /// The target is there and is something else, so it is not replaced even by force.
+    /// The target exists and is something else, so it is not replaced even if forced.
     #[error("{} exists and is not {what}, so it is never replaced", target.display())]
     NotOurs {
         /// The target.
         target: PathBuf,
-        /// What it would have to be.
+        /// What it must be to be replaced.
         what: &'static str,
     },
     /// The target's parent folder is missing, or cannot be written.
@@ -44,7 +44,7 @@ pub enum FolderError {
     Folder {
         /// The parent.
         folder: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// A file could not be written.
@@ -52,7 +52,7 @@ pub enum FolderError {
     File {
         /// Its name within the folder.
         name: String,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The finished folder could not be moved into place.
@@ -60,24 +60,24 @@ pub enum FolderError {
     Rename {
         /// The target.
         target: PathBuf,
-        /// What was finished.
+        /// The folder's kind in one word.
         noun: &'static str,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
 }
 
-/// A folder being written. Dropped before it is finished, it takes back whatever it made.
+/// A folder being written. If it is dropped before [`FolderWriter::finish`], everything it wrote is removed.
 #[derive(Debug)]
 pub struct FolderWriter {
     kind: FolderKind,
     target: PathBuf,
     partial: TempDir,
-    /// After `partial`, which lies in it and has to go first.
+    /// Declared after `partial`, which lies in it and must be dropped first.
     _parent: MadeFolders,
 }
 
-/// Folders that were made on the way to the target, outermost first. Those that stay empty are removed again.
+/// Parent folders of the target that were made, outermost first. On drop, those that are empty are removed.
 #[derive(Debug)]
 struct MadeFolders(Vec<PathBuf>);
 
@@ -101,7 +101,7 @@ impl MadeFolders {
 impl Drop for MadeFolders {
     fn drop(&mut self) {
         for folder in self.0.iter().rev() {
-            // Only empty folders can be removed so: one that holds what was made stays.
+            // This fails for folders that are not empty, which must stay.
             let _ = std::fs::remove_dir(folder);
         }
     }
@@ -124,10 +124,10 @@ fn check_target(target: &Path, force: bool, kind: FolderKind) -> Result<(), Fold
 }
 
 impl FolderWriter {
-    /// Opens a folder beside `target` to write in. `force` allows an older one of this kind to be replaced.
+    /// Makes a temporary folder beside `target`. `force` allows an older folder of this kind to be replaced.
     pub fn begin(target: &Path, force: bool, kind: FolderKind) -> Result<Self, FolderError> {
         check_target(target, force, kind)?;
-        // What is there already is replaced where it really is, be it named `.` or by a link.
+        // An existing target may be named `.` or by a link: replace the real folder.
         let target = &target.canonicalize().unwrap_or_else(|_| target.to_owned());
         let folder = match target.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -140,17 +140,17 @@ impl FolderWriter {
             .prefix(&format!(".{name}."))
             .suffix(PARTIAL_SUFFIX)
             .tempdir_in(&folder)
-            // The kind alone: the whole error names our hidden folder, which means nothing to anyone.
+            // Only the kind, since the full error names the temporary folder, which would confuse users.
             .map_err(|error| wrong(error.kind().into()))?;
         Ok(Self { kind, target: target.to_owned(), partial, _parent: made })
     }
 
-    /// Where files are written until they are moved into place. What else is put there has to be gone by then.
+    /// The temporary folder. Files that do not belong to the result must be removed before [`FolderWriter::finish`].
     pub fn path(&self) -> &Path {
         self.partial.path()
     }
 
-    /// Writes a file, and gives back how many bytes it has. Files of different names may be written at once.
+    /// Writes a file and returns its length in bytes. Files of different names may be written in parallel.
     pub fn write_file(
         &self,
         name: &str,
@@ -172,7 +172,7 @@ impl FolderWriter {
             Ok(()) => Ok(()),
             Err(source) => {
                 if let Some(old) = &replaced {
-                    // The old one goes back to where it was; if even that fails, the error below names the cause.
+                    // Restore the old folder; if that fails too, the error below names the cause.
                     let _ = std::fs::rename(old.path().join("old"), &self.target);
                 }
                 Err(wrong(source))
@@ -180,7 +180,7 @@ impl FolderWriter {
         }
     }
 
-    /// Moves what the target holds into a folder that is removed when the new one is in place.
+    /// Moves an existing target into a temporary folder that is removed when the new one is in place.
     fn set_old_aside(&self) -> std::io::Result<Option<TempDir>> {
         if !self.target.exists() {
             return Ok(None);
@@ -192,11 +192,11 @@ impl FolderWriter {
     }
 }
 
-/// A temporary folder is its owner's alone; what is finished is as open as any folder the user makes.
+/// Temporary folders are private to their owner; a finished folder gets ordinary permissions.
 #[cfg(unix)]
 fn make_readable(folder: &Path) {
     use std::os::unix::fs::PermissionsExt;
-    // What only its owner can read is still what was asked for.
+    // If this fails, the folder is still complete, but readable only by its owner.
     let _ = std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755));
 }
 

@@ -1,16 +1,16 @@
-//! `sunbake.json`: format version 1, field by field. Other programs read it, so a change here is a change of version.
+//! `sunbake.json`: format version 1, field by field. Other programs read it, so a change here needs a new version.
 //!
-//! Lengths are metres, angles degrees, times fractions of the path unless a name says otherwise. Vectors are in the
-//! scene's world space. File names are relative to the manifest's folder.
+//! Lengths are in metres, angles in degrees, times in fractions of the path (0 to 1), unless a name says otherwise.
+//! Vectors are in the scene's world space. File names are relative to the manifest's folder.
 
 use serde::{Deserialize, Serialize};
 
-/// What `format` says.
+/// Value of [`Manifest::format`].
 pub const FORMAT: &str = "sunbake";
-/// What `version` says.
+/// Value of [`Manifest::version`].
 pub const VERSION: u32 = 1;
 
-/// The whole of `sunbake.json`.
+/// The content of `sunbake.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Always [`FORMAT`].
@@ -23,34 +23,34 @@ pub struct Manifest {
     pub source: SourceEntry,
     /// The scene with the bake's texture coordinates.
     pub scene: SceneEntry,
-    /// The sun's path; null where the sun did not rise, or only a lamp was baked.
+    /// The sun's path; null if the sun does not rise or if only a lamp was baked.
     pub path: Option<PathEntry>,
-    /// The path of a lamp that moves through the scene, where one was baked. Its t is the sun's.
+    /// The path of a lamp that moves through the scene, if one was baked. Its t is the same as the sun's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampEntry>,
-    /// How ambient light was baked, where it was.
+    /// How ambient light was baked, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ambient: Option<AmbientEntry>,
     /// 8 or 16: bits of each stored time.
     pub bits: u32,
     /// Pages of the atlas.
     pub atlases: Vec<AtlasEntry>,
-    /// What lies where in which page: one entry per drawn primitive of each node of `scene.glb`.
+    /// Placement on the pages: one entry per drawn primitive of each node of `scene.glb`.
     pub instances: Vec<InstanceEntry>,
-    /// What was baked and why, what was left out and why.
+    /// Which effects were baked, which not, and why.
     pub effects: Vec<EffectEntry>,
-    /// What it took.
+    /// Counts, times and sizes of the bake.
     pub stats: Stats,
-    /// What storing lost.
+    /// Minutes lost by storing.
     pub error: ErrorEntry,
 }
 
-/// The file that was baked.
+/// The scene file that was baked.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SourceEntry {
     /// File name without its folder.
     pub file: String,
-    /// SHA-256 of the file and of what it refers to.
+    /// SHA-256, in lower-case hex, of the file and of the files that it names.
     pub sha256: String,
 }
 
@@ -59,11 +59,11 @@ pub struct SourceEntry {
 pub struct SceneEntry {
     /// File name.
     pub file: String,
-    /// World position of the centre that the bake was computed relative to.
+    /// World position of bake space's origin, in metres.
     pub centre_m: [f64; 3],
-    /// Texels a metre that the atlas reached.
+    /// Density of the atlas, in texels per metre.
     pub texels_per_metre: f64,
-    /// SHA-256 of the file, in lower-case hex: with another scene the times are wrong. Sets of before this was kept lack it.
+    /// SHA-256 of the file, in lower-case hex: times are wrong for any other scene. Absent in older sets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sha256: Option<String>,
 }
@@ -71,13 +71,13 @@ pub struct SceneEntry {
 /// The sun's path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathEntry {
-    /// Where, if the path is that of a real day.
+    /// The place, if the path is that of a real day.
     pub place: Option<GeoLocation>,
     /// The local date at the path's start, `YYYY-MM-DD`, if it is a real day.
     pub date: Option<String>,
     /// Hours local clocks are ahead of UTC.
     pub utc_offset_h: Option<f64>,
-    /// Degrees the scene's north is turned from -Z towards +X.
+    /// Angle by which the scene's north is turned from -Z towards +X.
     pub north_deg: Option<f64>,
     /// Start and end by local clocks, `YYYY-MM-DDTHH:MM:SS`.
     pub local: Option<[String; 2]>,
@@ -107,43 +107,43 @@ pub struct GeoLocation {
 /// `dir(h) = cos d (cos h zero + sin h axis x zero) + sin d axis`, h linear in t.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ArcEntry {
-    /// Unit vector.
+    /// The axis of rotation, a unit vector.
     pub axis: [f64; 3],
-    /// Unit vector across the axis.
+    /// Direction at h = 0 and d = 0: a unit vector perpendicular to the axis.
     pub zero: [f64; 3],
-    /// d.
+    /// The declination d.
     pub declination_deg: f64,
-    /// h at the start and at the end.
+    /// The hour angle h at the start and at the end.
     pub hour_angle_deg: [f64; 2],
-    /// t at the start and at the end.
+    /// Path time at the start and at the end.
     pub t: [f64; 2],
 }
 
-/// A lamp's path, and what baking it took and lost. It moves at constant speed along straight lines from key to key.
+/// A lamp's path and its bake. The lamp moves at constant speed along a straight line from each key to the next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LampEntry {
-    /// Two at least, from t = 0 to t = 1, times ascending.
+    /// At least two keys, from t = 0 to t = 1, with ascending times.
     pub keys: Vec<LampKeyEntry>,
     /// Radius of the lamp.
     pub radius_m: f64,
-    /// Minutes from t = 0 to t = 1; the sun's, where the set has a sun.
+    /// Minutes from t = 0 to t = 1; the same as the sun's if the set has a sun.
     pub duration_min: f64,
-    /// What it took. Its seconds are among the set's.
+    /// Counts of the bake. Its seconds are included in the set's.
     pub stats: LampStats,
-    /// What storing its times lost.
+    /// Minutes lost by storing its times.
     pub error: ErrorEntry,
 }
 
-/// A place of the lamp.
+/// A position of the lamp at a path time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LampKeyEntry {
-    /// When.
+    /// Path time.
     pub t: f64,
-    /// Where, in world space.
+    /// Position in world space, in metres.
     pub position: [f64; 3],
 }
 
-/// What baking a lamp took.
+/// Counts of baking a lamp.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LampStats {
     /// Engine and its parameters, as given on the command line.
@@ -165,89 +165,92 @@ pub struct AtlasEntry {
     pub width: u32,
     /// In texels.
     pub height: u32,
-    /// Paths across the sun's disc; one where the sun is a line along its path.
+    /// Lanes across the sun's disc; one if the sun is a line along its path.
     pub lanes: Vec<LaneEntry>,
-    /// When texels see the lamp, in every page of a set that has one.
+    /// The lamp's times; present on every page of a set with a lamp.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampMapsEntry>,
-    /// Ambient occlusion, 0 is occluded: a grey PNG or, where some texel has two sides, an RGB one whose green is what the
-    /// front sees, blue what the back sees, and red, which viewers read, the greater of the two.
+    /// Ambient visibility, 0 is occluded: a grey PNG; or, if some texel has two sides, an RGB PNG with the front in
+    /// green, the back in blue and, for viewers, the greater of the two in red.
     pub ao: Option<String>,
-    /// Bent normals of fronts: RGB PNG of 16 bits, a code q meaning `(q - 32768) / 32767`, world space. The length is the
-    /// mean's own.
+    /// Bent normals of fronts, world space: RGB PNG of 16 bits, a code q meaning `(q - 32768) / 32767`. They are mean
+    /// directions, so their length is at most 1.
     pub bent: Option<String>,
-    /// Bent normals of backs, where some texel has two sides.
+    /// Bent normals of backs, if some texel has two sides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bent_back: Option<String>,
     /// Sky visibility in spherical harmonics.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sky: Option<SkyMapsEntry>,
-    /// All of these as numbers, OpenEXR of `f32`, if asked for. Nothing else needs it.
+    /// Ambient light as OpenEXR of `f32`, if requested. Not needed for playback.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ambient_exr: Option<String>,
-    /// Where storing this page lost minutes, if the bake was asked to show it. Nothing else needs these files.
+    /// Where storing lost minutes on this page, if requested. Not needed for playback.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loss_map: Option<LossMapEntry>,
 }
 
-/// Sky visibility: with sky radiance `L = sum of L_i Y_i`, a matt surface sends back `albedo * sum of L_i T_i`.
+/// Sky visibility: with sky radiance `L = sum of L_i Y_i`, a diffuse surface reflects `albedo * sum of L_i T_i`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SkyMapsEntry {
-    /// `sh2`: real spherical harmonics up to degree two, in the order (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2, 2),
-    /// orthonormal, of directions in world space: Y(1, -1) goes with y, Y(1, 0) with z, Y(1, 1) with x.
+    /// `sh2`: real spherical harmonics up to degree two, in the order (0, 0), (1, -1), (1, 0), (1, 1), (2, -2) to (2,
+    /// 2), orthonormal, of directions in world space: Y(1, -1) is proportional to y, Y(1, 0) to z, Y(1, 1) to x.
     pub basis: String,
     /// Coefficients T of fronts, three a file: RGB PNGs of 16 bits, a code q meaning `(q - 32768) / 32767`.
     pub front: [String; 3],
-    /// Those of backs, where some texel has two sides.
+    /// The same of backs, if some texel has two sides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub back: Option<[String; 3]>,
 }
 
-/// What ambient light was baked with, and what came of it.
+/// Settings and results of baking ambient light.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AmbientEntry {
-    /// Rays a texel and side; with an error, the most of them.
+    /// Rays per texel and side; with `error`, the largest number of them.
     pub rays: u32,
-    /// The error that texels were estimated to, with 95 % confidence; null: all have as many rays.
+    /// The error of ambient visibility (0 to 1) that texels were estimated to, with 95 % confidence; null: all texels
+    /// have the same number of rays.
     pub error: Option<f64>,
-    /// Metres beyond which nothing hides; a surface at d hides `(1 - (d / distance_m)^2)^2`. Null: everything hides.
+    /// Distance beyond which surfaces do not occlude; at distance d they occlude by `(1 - (d / distance_m)^2)^2`. Null:
+    /// no limit.
     pub distance_m: Option<f64>,
-    /// Points of a texel along each of its edges.
+    /// Sample points per texel along each axis.
     pub supersample: u32,
     /// 8 or 16: bits of the occlusion textures.
     pub bits: u32,
     /// Rays traced in all.
     pub rays_traced: u64,
-    /// Texels inside a solid. Those beside one that can be seen hold its value, the others 0.
+    /// Texels inside a solid. Those beside a visible texel have its value, the others 0.
     pub buried_texels: u64,
-    /// Sides of texels that may still be off by more than `error`, because there were no more rays.
+    /// Sides of texels whose error may exceed `error`, because the number of rays was not enough.
     #[serde(default)]
     pub unsettled_texels: u64,
-    /// How far apart the two sides of cuts are.
+    /// Differences between the two sides of chart borders.
     pub seams: SeamEntry,
-    /// The scene with openness at its vertices, if asked for.
+    /// The scene with ambient visibility at its vertices, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vertices: Option<VertexEntry>,
 }
 
-/// How far apart filtered occlusion is on the two sides of cuts between charts of one surface, at points half a texel apart.
+/// Differences of filtered ambient visibility (0 to 1) between the two sides of chart borders of one surface, at points
+/// half a texel apart.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct SeamEntry {
-    /// Points looked at.
+    /// Number of points.
     pub points: u64,
-    /// Of these, those whose sides differ by more than a quarter: taken to be so in truth, left alone, and not counted below.
+    /// Points whose sides differ by more than 0.25: assumed to be real differences, left unchanged, and excluded below.
     pub differing: u64,
-    /// Mean difference before the texels beside cuts were made to agree.
+    /// Mean difference before texels at chart borders were adjusted.
     pub mean_before: f64,
     /// Mean difference as written.
     pub mean: f64,
-    /// 99 in 100 are no farther apart; of several pages, the largest.
+    /// 99th percentile of the difference; of several pages, the largest.
     pub p99: f64,
-    /// The worst.
+    /// Largest difference.
     pub worst: f64,
 }
 
-/// A scene with openness at its vertices. Nothing else needs it.
+/// A scene with ambient visibility at its vertices. Not needed for playback.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VertexEntry {
     /// File name.
@@ -256,39 +259,39 @@ pub struct VertexEntry {
     pub attribute: String,
 }
 
-/// Minutes that storing lost, texel by texel.
+/// Minutes lost by storing, for each texel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LossMapEntry {
-    /// PNG: minutes lost in all, from black over violet, red and orange to pale yellow; transparent where no surface is.
+    /// PNG: total minutes lost, from black over violet, red and orange to pale yellow; transparent without a surface.
     pub picture: String,
-    /// OpenEXR of two `f32` channels, in minutes: `layers`, lost for want of slots, and `bits`, lost by rounding.
+    /// OpenEXR of two `f32` channels, in minutes: `layers`, lost for lack of slots, and `bits`, lost by rounding.
     pub numbers: String,
-    /// How colours follow minutes: `sqrt`, so that a quarter of `scale_max_min` has the middle colour.
+    /// Colour scale: `sqrt`, so that a quarter of `scale_max_min` has the middle colour.
     pub scale: String,
-    /// Minutes that the brightest colour stands for.
+    /// Minutes of the brightest colour.
     pub scale_max_min: f64,
 }
 
-/// A lane across the sun's disc. Its times follow the path with the offset added to every arc's declination, and its window
-/// is `sqrt(1 - (offset / angular radius)^2)` of the sun's width.
+/// A lane across the sun's disc. Its times follow the path with the offset added to every arc's declination, and its
+/// window is `sqrt(1 - (offset / angular radius)^2)` of the sun's width.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LaneEntry {
-    /// Declination less the centre's.
+    /// The lane's declination less the centre's.
     pub offset_deg: f64,
-    /// Share of the disc's area.
+    /// Share of the disc's area, 0 to 1; a page's weights add up to 1.
     pub weight: f64,
-    /// Texture pairs; channel c of layer l holds interval 4 l + c.
+    /// Texture pairs: channel c of layer l holds interval 4 l + c.
     pub layers: Vec<LayerEntry>,
 }
 
 /// A lamp's times on a page.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LampMapsEntry {
-    /// Texture pairs; channel c of layer l holds interval 4 l + c.
+    /// Texture pairs: channel c of layer l holds interval 4 l + c.
     pub layers: Vec<LayerEntry>,
 }
 
-/// A pair of RGBA textures.
+/// A pair of RGBA textures. A code q of b bits means t = q / (2^b - 1); an unused slot has rise = max and fall = 0.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LayerEntry {
     /// Interval starts.
@@ -297,59 +300,58 @@ pub struct LayerEntry {
     pub fall: String,
 }
 
-/// Where the texels of a drawn primitive lie: `page_uv = uv * uv_scale + uv_offset`.
+/// Placement of a drawn primitive's texels: `page_uv = uv * uv_scale + uv_offset`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct InstanceEntry {
     /// Index of the node in `scene.glb`.
     pub node: usize,
     /// Index of the primitive within the node's mesh.
     pub primitive: usize,
-    /// Index in `atlases`; null for surfaces that are not baked (wholly transparent ones).
+    /// Index in `atlases`; null for surfaces that are not baked (invisible ones).
     pub atlas: Option<u32>,
-    /// Which `TEXCOORD_n` of `scene.glb` holds `uv`. In a set with ambient occlusion these are page coordinates already, so
-    /// that any viewer shows it: the scale is 1 and the offset 0.
+    /// Which `TEXCOORD_n` of `scene.glb` holds `uv`. In a set with ambient occlusion these are page coordinates
+    /// already, for viewers: the scale is 1 and the offset 0.
     pub uv_set: u32,
     /// In page coordinates, v from the top.
     pub uv_scale: [f32; 2],
     /// In page coordinates, v from the top.
     pub uv_offset: [f32; 2],
-    /// Whether the times hold for both sides. If so, a face is lit only while the sun stands before it.
+    /// Whether the times are for both sides. If so, a face is lit only while the sun is in front of it.
     pub double_sided: bool,
 }
 
-/// One effect: on or off, and why. What it costs and what turns it over is in words for people; sets of older bakers do
-/// not say it.
+/// One effect: on or off, and why. Cost and toggle are text for people; older sets lack them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectEntry {
-    /// Its name.
+    /// The effect's name.
     pub effect: String,
     /// Whether it was baked.
     pub on: bool,
-    /// The reason.
+    /// The reason why it is on or off.
     pub why: String,
-    /// What it costs while it is on; of what is off, what it would cost.
+    /// What the effect costs, or would cost if it were on.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub cost: String,
-    /// The flag, or the property of the scene, that would turn it over.
+    /// The flag, or the property of the scene, that would switch it on or off.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     #[serde(alias = "turned_over_by")]
     pub toggled_by: String,
 }
 
-/// What the bake took.
+/// Counts, times and sizes of a bake.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stats {
-    /// Triangles of all instances.
+    /// Triangles over all instances.
     pub triangles: u64,
     /// Triangles of the file that were left out: repeated index, no area, not finite.
     pub dropped_triangles: u64,
-    /// Texels that stand for a point of a surface.
+    /// Covered texels: those with a surface point.
     pub texels: u64,
-    /// Texels of all pages.
+    /// Texels of all pages, covered or not.
     pub page_texels: u64,
     /// Charts of the atlas.
     pub charts: u64,
-    /// Lit intervals found, of all lanes.
+    /// Lit intervals found, over all lanes.
     pub intervals: u64,
     /// Texels that never see the sun, along any lane.
     #[serde(default)]
@@ -358,15 +360,15 @@ pub struct Stats {
     pub most_intervals: u64,
     /// Engine and its parameters, as given on the command line.
     pub engine: String,
-    /// Rays traced; none by the exact engine.
+    /// Rays traced for times; 0 for the exact engine.
     pub rays: u64,
-    /// Hierarchy nodes that the exact engine looked into: sixteen boxes, or sixteen triangles' corners, each.
+    /// Hierarchy nodes that the exact engine visited: sixteen boxes, or the corners of sixteen triangles, each.
     #[serde(default)]
     pub node_tests: u64,
     /// Triangles that the exact engine solved.
     #[serde(default)]
     pub triangle_tests: u64,
-    /// Bytes of all files of the set but the manifest.
+    /// Bytes of all files of the set except the manifest.
     pub bytes: u64,
     /// Threads used.
     pub threads: usize,
@@ -393,27 +395,28 @@ pub struct StageSeconds {
     pub write: f64,
 }
 
-/// What storing lost, over covered texels, in minutes of the path. Of several lanes, a texel's loss is their mean by weight.
+/// Loss by storing, over covered texels, in minutes of the path. With several lanes, a texel's loss is their weighted
+/// mean.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEntry {
-    /// By rounding times to codes.
+    /// Loss by rounding times to codes.
     pub quantisation_min: LossEntry,
-    /// By having fewer slots than intervals.
+    /// Loss by having fewer slots than intervals.
     pub merge_min: LossEntry,
-    /// Texels that lost intervals for want of slots.
+    /// Texels that lost intervals for lack of slots.
     pub merged_texels: u64,
 }
 
-/// Distribution of a loss.
+/// Distribution of a loss over covered texels, in minutes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct LossEntry {
-    /// Over all covered texels.
+    /// Mean.
     pub mean: f64,
-    /// 99 in 100 texels lose no more.
+    /// 99th percentile.
     pub p99: f64,
-    /// The worst texel.
+    /// Largest loss of a texel.
     pub worst: f64,
-    /// Where that is: atlas page, x, y. Null where nothing was lost.
+    /// The texel with the largest loss: atlas page, x, y. Null if nothing was lost.
     pub worst_at: Option<[u32; 3]>,
 }
 

@@ -1,10 +1,12 @@
-//! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`mod@write`] writes one; only [`mod@read`] reads one.
+//! A baked set on disk: `sunbake.json`, `scene.glb` and the maps. Only [`mod@write`] writes one; only [`mod@read`]
+//! reads one.
 
 mod atlas;
 mod exr_file;
 pub mod folder;
 pub mod manifest;
 mod page;
+mod png_file;
 pub mod read;
 pub mod write;
 mod write_ambient;

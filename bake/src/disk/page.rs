@@ -10,14 +10,14 @@ use crate::maps::{AmbientMaps, LaneMaps, LayerMaps, PageMaps};
 pub struct BakedPage {
     /// What playback reads.
     pub maps: PageMaps,
-    /// Ambient light before it was rounded to codes; present where the bake was asked for OpenEXR files.
+    /// Ambient light before it was rounded to codes; only if OpenEXR files were requested.
     pub ambient_numbers: Option<AmbientPage>,
-    /// Minutes that storing lost; present where the bake was asked for a loss map.
+    /// Minutes lost by storing; only if a loss map was requested.
     pub loss_map: Option<LossMap>,
 }
 
 impl BakedPage {
-    /// What the manifest says of the page: its size, and the names of its files as page `index` of a set.
+    /// The page's entry in the manifest: its size, and its files' names as page `index` of a set.
     pub fn entry(&self, index: usize) -> AtlasEntry {
         let PageMaps { width, height, lanes, lamp, ambient } = &self.maps;
         let lane = |(k, LaneMaps { lane, layers }): (usize, &LaneMaps)| LaneEntry {

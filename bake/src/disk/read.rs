@@ -1,4 +1,4 @@
-//! Reads a baked set. The only reader: what it accepts is checked here once, and trusted afterwards.
+//! Reads a baked set. This is the only reader: everything is checked here once, and trusted afterwards.
 
 use super::manifest::{
     ArcEntry, AtlasEntry, FORMAT, InstanceEntry, LampEntry, LampKeyEntry, LayerEntry, Manifest, PathEntry, VERSION,
@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the manifest in a set's folder.
 pub const MANIFEST_FILE: &str = "sunbake.json";
-/// Widest page that is read: what a bake may make at most.
+/// Largest width and height of a page, in texels: the limit of a bake.
 const MAX_PAGE_TEXELS: u32 = 16_384;
 
 /// A baked set, read and checked: files exist, sizes agree, indices are in range. The scene itself is read with
@@ -47,16 +47,20 @@ pub enum ReadError {
     Io {
         /// Which file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// There is no manifest in the folder.
-    #[error("{} holds no {MANIFEST_FILE}, so it is not a baked set: make one with `sunbake bake SCENE -o {}`", folder.display(), folder.display())]
+    #[error(
+        "{} holds no {MANIFEST_FILE}, so it is not a baked set: make one with `sunbake bake SCENE -o {}`",
+        folder.display(),
+        folder.display()
+    )]
     NotASet {
         /// The folder that was named.
         folder: PathBuf,
     },
-    /// The manifest is not JSON of the right shape.
+    /// The manifest is not valid.
     #[error("{}: {reason}; bake the scene again", path.display())]
     Manifest {
         /// The manifest.
@@ -64,7 +68,7 @@ pub enum ReadError {
         /// What is wrong, and where.
         reason: String,
     },
-    /// A texture is not what the manifest says.
+    /// A texture does not match the manifest.
     #[error("{}: {reason}; bake the scene again", path.display())]
     Texture {
         /// The texture.
@@ -143,7 +147,7 @@ fn check_instances(manifest: &Manifest) -> Result<(), String> {
     }
 }
 
-/// A lamp is in every page or in none.
+/// A lamp's path and its times on every page must all be present or all be absent.
 fn check_lamp(manifest: &Manifest) -> Result<(), String> {
     let differs = |atlas: &AtlasEntry| atlas.lamp.is_some() != manifest.lamp.is_some();
     match manifest.atlases.iter().position(differs) {
@@ -198,7 +202,7 @@ fn read_layers(
     entries.iter().map(|entry| Ok(LayerMaps { rise: codes(&entry.rise)?, fall: codes(&entry.fall)? })).collect()
 }
 
-/// Decodes a texture, refusing one of another size before its texels are allocated.
+/// Decodes a texture. A texture of another size is an error before its texels are allocated.
 fn decode(path: &Path, (width, height): (u32, u32)) -> Result<image::DynamicImage, ReadError> {
     let wrong = |reason: String| ReadError::Texture { path: path.to_owned(), reason };
     let io = |source| ReadError::Io { path: path.to_owned(), source };
@@ -230,7 +234,7 @@ fn read_codes(path: &Path, size: (u32, u32), bits: Bits) -> Result<Vec<[u16; 4]>
     }
 }
 
-/// What fronts see and, of a picture with colours, what backs see.
+/// Ambient visibility of fronts and, for a coloured picture, of backs.
 fn read_occlusion(path: &Path, size: (u32, u32)) -> Result<[Option<Vec<u16>>; 2], ReadError> {
     let image = decode(path, size)?;
     if !image.color().has_color() {

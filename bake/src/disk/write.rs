@@ -1,11 +1,12 @@
-//! Writes a baked set. The only writer.
+//! Writes a baked set. This is the only writer.
 //!
-//! It is written beside its target and moved into place when it is whole (`folder.rs`): a bake that stops before that, for
-//! whatever reason, leaves the old set or none.
+//! A set is written beside its target and moved into place when it is complete (`folder.rs`). A bake that stops
+//! earlier, for whatever reason, leaves the old set or none.
 
 use super::folder::{FolderKind, FolderWriter};
 use super::manifest::{AtlasEntry, Manifest};
 use super::page::BakedPage;
+use super::png_file::write_png;
 use super::read::MANIFEST_FILE;
 use crate::maps::{Bits, StoredBits};
 use rayon::prelude::*;
@@ -21,10 +22,10 @@ pub const VERTICES_FILE: &str = "vertices.glb";
 /// Why a set could not be written.
 pub use super::folder::FolderError as WriteError;
 
-/// What a set's folder is.
+/// A set's folder.
 const KIND: FolderKind = FolderKind { marker: MANIFEST_FILE, what: "a baked set", noun: "set" };
 
-/// A set being written. Dropped before it is finished, it takes back whatever it made.
+/// A set being written. If it is dropped before [`SetWriter::finish`], everything it wrote is removed.
 #[derive(Debug)]
 pub struct SetWriter {
     folder: FolderWriter,
@@ -32,7 +33,7 @@ pub struct SetWriter {
 }
 
 impl SetWriter {
-    /// Opens a folder beside `target` to write in.
+    /// Makes a temporary folder beside `target`. `force` allows an older set at `target` to be replaced.
     pub fn begin(target: &Path, force: bool) -> Result<Self, WriteError> {
         Ok(Self { folder: FolderWriter::begin(target, force, KIND)?, bytes: 0 })
     }
@@ -47,7 +48,7 @@ impl SetWriter {
         self.write_file(VERTICES_FILE, |file| file.write_all(glb))
     }
 
-    /// Writes a page's files, under the names that `entry` gives them ([`BakedPage::entry`]).
+    /// Writes a page's files with the names in `entry` ([`BakedPage::entry`]).
     pub fn write_page(&mut self, entry: &AtlasEntry, page: &BakedPage, bits: StoredBits) -> Result<(), WriteError> {
         let lanes = entry.lanes.iter().map(|lane| &lane.layers).zip(page.maps.lanes.iter().map(|lane| &lane.layers));
         let lamp = entry.lamp.as_ref().map(|lamp| &lamp.layers).zip(page.maps.lamp.as_ref());
@@ -91,19 +92,8 @@ impl SetWriter {
     }
 
     fn write_texture(&self, name: &str, codes: &[[u16; 4]], size: (u32, u32), bits: Bits) -> Result<u64, WriteError> {
-        self.folder.write_file(name, |file| {
-            let mut encoder = png::Encoder::new(file, size.0, size.1);
-            encoder.set_color(png::ColorType::Rgba);
-            encoder.set_depth(match bits {
-                Bits::Eight => png::BitDepth::Eight,
-                Bits::Sixteen => png::BitDepth::Sixteen,
-            });
-            encoder.set_compression(png::Compression::Fast);
-            encoder.set_filter(png::Filter::Up);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&bytes_of(codes, bits))?;
-            Ok(writer.finish()?)
-        })
+        let bytes = bytes_of(codes, bits);
+        self.folder.write_file(name, |file| write_png(&bytes, png::ColorType::Rgba, size, bits, file))
     }
 }
 
@@ -239,7 +229,7 @@ mod tests {
         }
     }
 
-    /// The set's manifest, changed, is refused with these words.
+    /// The set's manifest, after `change`, is refused with a message that contains `expected`.
     fn refused(change: impl FnOnce(&mut serde_json::Value), expected: &str) {
         let folder = tempfile::tempdir().unwrap();
         let target = folder.path().join("set");

@@ -1,9 +1,9 @@
-//! A page's ambient light as files: occlusion for viewers and for playback, bent normals, the sky, and all of them as
-//! numbers.
+//! Writes a page's ambient light: occlusion, bent normals, sky coefficients, and all of them as floats.
 
 use super::exr_file::write_exr;
 use super::manifest::AtlasEntry;
 use super::page::BakedPage;
+use super::png_file::write_png;
 use super::write::{SetWriter, WriteError};
 use crate::ambient::{AmbientPage, Side};
 use crate::maps::{AmbientMaps, AmbientSide, Bits, in_8_bits};
@@ -42,7 +42,8 @@ impl SetWriter {
     }
 }
 
-/// Grey, or where there are backs red for viewers, green for fronts, blue for backs.
+/// Grey; or, if some texel has a back, RGB: green is the front, blue the back, and red, for viewers, the brighter of
+/// both.
 fn write_occlusion(
     front: &AmbientSide,
     back: Option<&AmbientSide>,
@@ -56,32 +57,23 @@ fn write_occlusion(
             (png::ColorType::Rgb, front.open.iter().zip(&back.open).flat_map(|(&f, &b)| [f.max(b), f, b]).collect())
         }
     };
-    write_png(&codes, color, size, bits, file)
+    write_codes(&codes, color, size, bits, file)
 }
 
 fn write_rgb16(texels: impl Iterator<Item = [u16; 3]>, size: (u32, u32), file: impl Write) -> Result<()> {
-    write_png(&texels.flatten().collect::<Vec<u16>>(), png::ColorType::Rgb, size, Bits::Sixteen, file)
+    write_codes(&texels.flatten().collect::<Vec<u16>>(), png::ColorType::Rgb, size, Bits::Sixteen, file)
 }
 
-fn write_png(codes: &[u16], color: png::ColorType, size: (u32, u32), bits: Bits, file: impl Write) -> Result<()> {
-    let mut encoder = png::Encoder::new(file, size.0, size.1);
-    encoder.set_color(color);
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_filter(png::Filter::Up);
+/// Writes codes of 16 bits, rounded to 8 bits if asked.
+fn write_codes(codes: &[u16], color: png::ColorType, size: (u32, u32), bits: Bits, file: impl Write) -> Result<()> {
     let bytes: Vec<u8> = match bits {
         Bits::Eight => codes.iter().map(|&code| in_8_bits(code)).collect(),
         Bits::Sixteen => codes.iter().flat_map(|code| code.to_be_bytes()).collect(),
     };
-    encoder.set_depth(match bits {
-        Bits::Eight => png::BitDepth::Eight,
-        Bits::Sixteen => png::BitDepth::Sixteen,
-    });
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&bytes)?;
-    Ok(writer.finish()?)
+    write_png(&bytes, color, size, bits, file)
 }
 
-/// One channel a quantity: `ao`, `bent.x` and so on, `sky.0` to `sky.8`; those of backs begin with `back.`.
+/// Writes one channel for each quantity: `ao`, `bent.x` to `bent.z`, `sky.0` to `sky.8`. Backs have the prefix `back.`.
 fn write_numbers(page: &AmbientPage, file: impl Write + Seek) -> Result<()> {
     let mut channels = Vec::new();
     for (prefix, side) in std::iter::once(("", &page.front)).chain(page.back.as_ref().map(|back| ("back.", back))) {

@@ -1,4 +1,4 @@
-//! A page's lost minutes as files: a picture for the eye, an OpenEXR of two channels for programs.
+//! Writes a page's loss map: a picture to look at, and an OpenEXR file with two channels for programs.
 
 use super::exr_file::write_exr;
 use super::manifest::LossMapEntry;
