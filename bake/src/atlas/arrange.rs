@@ -12,7 +12,7 @@
 //!   requested density.
 //! * Pages are filled largest first, each group going to the emptiest page.
 
-use super::strip::{self, Packed, Shape};
+use super::strip::{self, PackShape, Packed};
 use super::tile::{ChartBox, Tile, reference_scale};
 use super::unwrap::Charts;
 use super::{PageSize, Placement};
@@ -52,7 +52,7 @@ pub(super) struct FileLayout {
 /// A shape to be packed, and what it belongs to.
 #[derive(Clone)]
 struct Piece {
-    shape: Shape,
+    shape: PackShape,
     item: usize,
     kind: PieceKind,
 }
@@ -181,7 +181,7 @@ impl Arrangement<'_> {
             let piece = |(slot, content): (usize, DVec2)| {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
                 let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
-                let shape = Shape::rectangle(width, height, false);
+                let shape = PackShape::rectangle(width, height, false);
                 vec![Piece { shape, item, kind: PieceKind::Instance(slot, content) }]
             };
             contents.into_iter().enumerate().map(piece).collect()

@@ -14,7 +14,7 @@ use super::outline::Outline;
 
 /// A shape to pack, in texels.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Shape {
+pub(super) struct PackShape {
     pub width: u32,
     pub height: u32,
     /// Whether it may be turned by quarters.
@@ -40,7 +40,7 @@ pub(super) struct Packed {
     pub height: u32,
 }
 
-impl Shape {
+impl PackShape {
     /// A box.
     pub fn rectangle(width: u32, height: u32, may_turn: bool) -> Self {
         Self { width, height, may_turn, outline: None }
@@ -70,7 +70,7 @@ struct TurnedShape {
 }
 
 impl TurnedShape {
-    fn new(shape: &Shape, turns: u8) -> Self {
+    fn new(shape: &PackShape, turns: u8) -> Self {
         let (width, height) =
             if turns.is_multiple_of(2) { (shape.width, shape.height) } else { (shape.height, shape.width) };
         Self { width, height, columns: shape.outline.as_ref().map(|outline| outline.columns(turns)) }
@@ -120,7 +120,7 @@ impl TurnedShape {
 }
 
 /// Packs into a strip of the given width; `None` if that needs more than `height`.
-pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> {
+pub(super) fn pack(shapes: &[PackShape], width: u32, height: u32) -> Option<Packed> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
     order.sort_by_key(|&i| {
         let shape = &shapes[i];
@@ -130,7 +130,7 @@ pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> 
     let mut gaps = FreeSpace::new(shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1));
     let mut packed = Packed { positions: vec![PackedPosition::default(); shapes.len()], ..Packed::default() };
     for index in order {
-        let Shape { width: across, height: along, may_turn, .. } = shapes[index];
+        let PackShape { width: across, height: along, may_turn, .. } = shapes[index];
         if let Some((x, y, is_turned)) = gaps.take(across, along, may_turn) {
             packed.positions[index] = PackedPosition { x, y, turns: u8::from(is_turned) };
             continue;
@@ -156,13 +156,13 @@ pub(super) fn pack(shapes: &[Shape], width: u32, height: u32) -> Option<Packed> 
 mod tests {
     use super::*;
 
-    fn scattered(count: u32) -> Vec<Shape> {
+    fn scattered(count: u32) -> Vec<PackShape> {
         let mut state = 1u32;
         let mut next = |limit: u32| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             1 + (state >> 16) % limit
         };
-        (0..count).map(|i| Shape::rectangle(next(40), next(25), i % 3 > 0)).collect()
+        (0..count).map(|i| PackShape::rectangle(next(40), next(25), i % 3 > 0)).collect()
     }
 
     #[test]
@@ -185,9 +185,9 @@ mod tests {
 
     #[test]
     fn too_much_for_the_strip_is_refused() {
-        let fixed = Shape::rectangle(10, 4, false);
+        let fixed = PackShape::rectangle(10, 4, false);
         assert!(pack(std::slice::from_ref(&fixed), 9, 100).is_none());
-        assert!(pack(&[Shape { may_turn: true, ..fixed.clone() }], 9, 100).is_some());
+        assert!(pack(&[PackShape { may_turn: true, ..fixed.clone() }], 9, 100).is_some());
         let six = vec![fixed; 6];
         assert!(pack(&six, 20, 11).is_none());
         assert!(pack(&six, 20, 12).is_some());

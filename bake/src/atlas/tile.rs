@@ -7,7 +7,7 @@
 //! is cheaper to enlarge the small instances' rectangles. [`reference_scale`] finds the cheapest choice.
 
 use super::outline::Outline;
-use super::strip::{self, Packed, PackedPosition, Shape};
+use super::strip::{self, PackShape, Packed, PackedPosition};
 use super::unwrap::Charts;
 use glam::DVec2;
 
@@ -34,14 +34,14 @@ impl ChartBox {
     }
 
     /// The chart's padded shape.
-    pub fn shape(&self, charts: &Charts, chart: usize, padding: u32) -> Shape {
+    pub fn shape(&self, charts: &Charts, chart: usize, padding: u32) -> PackShape {
         let (width, height) = (self.cells.0 + 2 * padding, self.cells.1 + 2 * padding);
         let is_worth_it = self.cells.0.min(self.cells.1) >= LEAST_OUTLINED_TEXELS;
         let outline = is_worth_it.then(|| {
             let corners = |t: [u32; 3]| t.map(|v| self.texel(charts.points[v as usize], 0));
             Outline::new(charts.triangles_of(chart).map(corners), self.cells, padding)
         });
-        Shape { width, height, may_turn: true, outline }
+        PackShape { width, height, may_turn: true, outline }
     }
 
     /// Position in texels of a point of the chart, from the corner of the unpadded box. Turning never mirrors.
@@ -86,8 +86,8 @@ impl Tile {
 }
 
 /// Tries a few widths around the square and keeps the smallest box.
-fn pack_compactly(shapes: &[Shape]) -> Packed {
-    let area: f64 = shapes.iter().map(Shape::area).sum();
+fn pack_compactly(shapes: &[PackShape]) -> Packed {
+    let area: f64 = shapes.iter().map(PackShape::area).sum();
     let widest = shapes.iter().map(|s| s.width.max(s.height)).max().unwrap_or(1);
     let tries = [0.9, 1.0, 1.1, 1.2].map(|k| ((area.sqrt() * k).ceil() as u32).max(widest));
     let fits = tries.iter().filter_map(|&width| strip::pack(shapes, width, u32::MAX / 2));

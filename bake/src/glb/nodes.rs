@@ -46,7 +46,7 @@ fn transform(node: &Node) -> Map<String, Value> {
 /// Cameras with a near plane at a ten-thousandth of the scene's half size and no far plane.
 pub(super) fn cameras(scene: &Scene) -> Vec<Value> {
     let near = (scene.half_extent_m.max_element() * 1e-4).max(1e-6);
-    let camera = |camera: &crate::scene::Camera| {
+    let camera = |camera: &crate::scene::SceneCamera| {
         let mut written = Map::new();
         if let Some(name) = &camera.name {
             written.insert("name".into(), json!(name));

@@ -1,7 +1,7 @@
 //! Cameras, and the directional light that serves as the sun if no place is given.
 
 use super::{
-    Camera,
+    SceneCamera,
     document::{self, Document, place},
     limits::WarningLog,
     nodes::NodeTree,
@@ -11,7 +11,7 @@ use serde_json::Value;
 
 /// Perspective cameras under drawn nodes. One that cannot be used is left out with a warning, since a bake does not
 /// need it.
-pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<Camera> {
+pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<SceneCamera> {
     let mut cameras = Vec::new();
     for (node, (placed, &index)) in tree.nodes.iter().zip(&tree.file_index).enumerate() {
         let Some(camera) = tree.file.get(index).and_then(|file| file.camera) else { continue };
@@ -27,7 +27,7 @@ pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut W
             None => log.warn("only perspective cameras are read; left out", place),
             Some(fov_y_rad) if fov_y_rad > 0.0 && fov_y_rad < std::f64::consts::PI => {
                 let name = camera.name.or_else(|| placed.name.clone());
-                cameras.push(Camera { name, node, bake_from_camera, fov_y_rad });
+                cameras.push(SceneCamera { name, node, bake_from_camera, fov_y_rad });
             }
             Some(_) => log.warn("its field of view is not between 0 and 180 degrees; left out", place),
         }

@@ -1,7 +1,7 @@
 //! Loads a file into a [`Scene`]. Each step has a module of its own.
 
 use super::{
-    Camera, Dropped, Instance, LoadError, LoadLimits, Mesh, Scene, Source,
+    Dropped, Instance, LoadError, LoadLimits, Mesh, Scene, SceneCamera, Source,
     accessors::Reader,
     cameras, container,
     container::Container,
@@ -64,7 +64,7 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
         log.warn("they are not played; every node has its rest pose", "animations");
     }
     let centre_m = bounds.rounded_centre();
-    let cameras: Vec<Camera> = cameras::read(&doc, &tree, centre_m, &mut log);
+    let cameras: Vec<SceneCamera> = cameras::read(&doc, &tree, centre_m, &mut log);
     Ok(Scene {
         source: source(path, fetcher),
         instances: drawn.draws.iter().map(|&draw| instance(&tree, draw, centre_m)).collect(),

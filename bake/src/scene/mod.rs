@@ -75,7 +75,7 @@ pub struct Scene {
     /// Decoded images, only those that some material uses.
     pub images: Vec<Image>,
     /// Cameras under nodes, in node order.
-    pub cameras: Vec<Camera>,
+    pub cameras: Vec<SceneCamera>,
     /// Direction towards the sun, world space, unit length: the first `KHR_lights_punctual` directional light.
     pub sun_direction: Option<DVec3>,
     /// World position of the origin of bake space: the centre of the scene's bounding box, rounded to a power of two
@@ -230,7 +230,7 @@ pub struct Image {
 
 /// A perspective camera. (Orthographic ones are left out with a warning.)
 #[derive(Debug, Clone)]
-pub struct Camera {
+pub struct SceneCamera {
     /// Name of the camera or, failing that, of its node.
     pub name: Option<String>,
     /// Index in [`Scene::nodes`].

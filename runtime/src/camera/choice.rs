@@ -61,7 +61,7 @@ impl CameraChoice {
 impl Camera {
     /// A camera of a scene by its name.
     pub fn named(scene: &Scene, name: &str) -> Result<Self, CameraError> {
-        let named = |camera: &&sunbake::scene::Camera| camera.name.as_deref() == Some(name);
+        let named = |camera: &&sunbake::scene::SceneCamera| camera.name.as_deref() == Some(name);
         scene.cameras.iter().find(named).map(Self::from_scene).ok_or_else(|| CameraError::NoSuchCamera {
             name: name.to_owned(),
             known: scene.cameras.iter().filter_map(|camera| camera.name.clone()).collect(),

@@ -35,7 +35,7 @@ impl Camera {
     }
 
     /// A camera of the file.
-    pub fn from_scene(camera: &sunbake::scene::Camera) -> Self {
+    pub fn from_scene(camera: &sunbake::scene::SceneCamera) -> Self {
         let matrix = camera.bake_from_camera;
         let axis = |v: DVec3| matrix.transform_vector3(v).normalize_or(v);
         Self {

@@ -22,7 +22,7 @@ pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Scene, LoadError> {
 pub fn load_limited(name: &str, bytes: &[u8], limits: &LoadLimits) -> Result<Scene, LoadError> {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join(name);
-    std::fs::write(&path, bytes).expect("room for a small file");
+    std::fs::write(&path, bytes).expect("space for a small file");
     load(&path, limits)
 }
 

@@ -1,4 +1,4 @@
-//! Materials, images, and what alpha comes to.
+//! Materials, images, and how alpha is read.
 
 use super::{Builder, builder::png};
 use crate::scene::{Alpha, Material, Scene, Wrap};
@@ -35,8 +35,8 @@ fn blended_surfaces_are_masked_at_one_half_and_invisible_where_nothing_reaches_i
     let blend = || json!({ "alphaMode": "BLEND" });
     assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Invisible, "glass");
-    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Invisible, "a faint decal");
-    assert_eq!(alpha_of(blend(), 1.0, &[HALF, SOLID]), Alpha::Opaque, "nothing to cut");
+    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Invisible, "no point reaches the cutoff");
+    assert_eq!(alpha_of(blend(), 1.0, &[HALF, SOLID]), Alpha::Opaque, "no point is below the cutoff");
     assert_eq!(alpha_of(blend(), 0.9, &[HALF, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(json!({}), 0.1, &[CLEAR]), Alpha::Opaque, "OPAQUE ignores alpha");
 }
@@ -114,7 +114,7 @@ fn a_third_set_of_coordinates_stands_in_place_of_the_first_where_the_picture_wan
 }
 
 #[test]
-fn a_lost_image_is_a_warning_for_colour_and_an_error_for_alpha() {
+fn an_unusable_image_is_a_warning_for_colour_and_an_error_for_alpha() {
     let webp = b"RIFF\x10\0\0\0WEBPVP8 ".as_slice();
     let cut_png = &png(&[SOLID])[..40];
     for (bytes, cause) in [(webp, "it is WebP"), (b"nonsense", "neither PNG nor JPEG"), (cut_png, "")] {

@@ -203,7 +203,7 @@ fn bad_triangles_are_counted_and_the_rest_is_kept() {
     let scene = b.scene();
     assert_eq!(scene.dropped, Dropped { repeated_index: 1, zero_area: 1, non_finite: 2 });
     assert_eq!(scene.triangle_count(), 2);
-    assert_eq!(scene.meshes[0].positions.len(), 3, "vertices that nothing uses are gone, broken ones first of all");
+    assert_eq!(scene.meshes[0].positions.len(), 3, "unused vertices are removed, among them the broken ones");
     assert_eq!(scene.meshes[0].normals.as_deref(), Some([Vec3::Z; 3].as_slice()), "normals are repaired");
 }
 

@@ -78,7 +78,7 @@ fn the_same_scene_is_the_same_bytes_and_a_second_generation_too() {
     let (second, again) = rewrite(&again);
     assert!(
         second.bytes == rewrite(&again).0.bytes,
-        "once the baked set stands in for a missing picture set, all is said"
+        "a second generation adds nothing once the baked set has replaced a missing set 0"
     );
 }
 
@@ -95,7 +95,7 @@ fn another_reader_that_validates_accepts_it() {
 }
 
 #[test]
-fn looks_come_back() {
+fn materials_and_images_survive_writing() {
     let mut b = Builder::new();
     let texture = b.texture(&png(&[[255, 0, 0, 255], [0, 255, 0, 0]]));
     b.push("samplers", json!({ "wrapS": 33648, "wrapT": 33071 }));
@@ -129,7 +129,7 @@ fn looks_come_back() {
     assert_eq!((again.materials[0].alpha, again.materials[1].alpha), (Alpha::Mask { cutoff: 0.3 }, Alpha::Invisible));
     let texture = |scene: &Scene| scene.materials[0].base_color_texture.expect("a texture");
     let (a, b) = (texture(&scene), texture(&again));
-    assert_eq!((a.texcoord, b.texcoord, a.wrap), (1, 0, b.wrap), "the picture's coordinates move to set 0");
+    assert_eq!((a.texcoord, b.texcoord, a.wrap), (1, 0, b.wrap), "the base colour's coordinates move to set 0");
     let difference = a.image_from_texcoord - b.image_from_texcoord;
     assert!(difference.abs().to_cols_array().iter().all(|&d| d < 1e-6), "{difference}");
     assert_eq!(scene.images[0].encoded, again.images[0].encoded);

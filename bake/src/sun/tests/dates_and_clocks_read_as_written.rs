@@ -9,9 +9,9 @@ fn date(text: &str) -> Date {
 
 #[test]
 fn days_that_do_not_exist_are_refused_with_the_month_length() {
-    for (text, told) in [("2026-02-30", "01 to 28"), ("2027-02-29", "01 to 28"), ("1900-02-29", "01 to 28")] {
+    for (text, expected) in [("2026-02-30", "01 to 28"), ("2027-02-29", "01 to 28"), ("1900-02-29", "01 to 28")] {
         let message = text.parse::<Date>().expect_err("no such day").to_string();
-        assert!(message.contains(&format!("{text} does not exist")) && message.contains(told), "{message}");
+        assert!(message.contains(&format!("{text} does not exist")) && message.contains(expected), "{message}");
     }
     for text in ["2026-04-31", "2026-13-01", "2026-00-10", "2026-01-00"] {
         assert!(matches!(text.parse::<Date>(), Err(DateError::Missing(..))), "{text}");

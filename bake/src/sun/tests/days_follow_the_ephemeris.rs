@@ -26,21 +26,21 @@ fn every_place_and_date_stays_within_its_stated_error() {
                         continue;
                     }
                 };
-                let told = path.day.as_ref().expect("a day");
+                let day = path.day.as_ref().expect("a day");
                 let ephemeris =
-                    Ephemeris::new([latitude, longitude], request.date, told.utc_offset_h, Compass::new(0.0))
+                    Ephemeris::new([latitude, longitude], request.date, day.utc_offset_h, Compass::new(0.0))
                         .expect("an ephemeris");
                 // At other moments than the fit's own samples.
                 for i in 0..=2000 {
                     let t = f64::from(i) / 2000.0;
-                    let truth = ephemeris.direction(told.start_min + t * path.duration_min).expect("a direction");
+                    let truth = ephemeris.direction(day.start_min + t * path.duration_min).expect("a direction");
                     let error = path.direction(t).angle_between(truth).to_degrees();
                     if truth.y > 0.0 {
                         worst = worst.max(error);
                         assert!(error < 0.02, "{latitude} {longitude} {date}: {error} degrees at t {t}");
                         assert!(
-                            error < told.ephemeris_error_deg + 1e-4,
-                            "{latitude} {longitude} {date}: more than told"
+                            error < day.ephemeris_error_deg + 1e-4,
+                            "{latitude} {longitude} {date}: more than the stated error"
                         );
                     }
                 }

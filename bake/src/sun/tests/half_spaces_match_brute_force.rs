@@ -94,7 +94,7 @@ fn a_plane_square_to_the_axis_is_all_or_nothing() {
         let expected: &[[f64; 2]] = if declination > 0.0 { &[[0.0, 1.0]] } else { &[] };
         assert_eq!(times(&arc(declination, [-9.0, 9.0]), DVec3::Z), expected, "declination {declination}");
     }
-    assert_eq!(times(&arc(0.0, [-9.0, 9.0]), DVec3::Z), [[0.0, 1.0]], "a plane that holds the arc is not above it");
+    assert_eq!(times(&arc(0.0, [-9.0, 9.0]), DVec3::Z), [[0.0, 1.0]], "a plane that contains the arc is not above it");
 }
 
 /// I3.

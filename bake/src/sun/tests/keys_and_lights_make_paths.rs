@@ -35,10 +35,10 @@ fn keys_without_times_are_evenly_spaced_and_last_as_the_sun_would() {
 #[test]
 fn bad_files_say_what_and_where() {
     let up = r#"{"direction": [0,1,0]}"#;
-    for (keys, told) in [
+    for (keys, expected) in [
         (r#"{"t": 0, "direction": [1,0,0]}"#.to_owned(), "1 keys: give 2 to 1000"),
         (format!("{up}, {up}"), "keys 0 and 1 of the path (counted from 0) point in the same direction"),
-        (format!(r#"{up}, {{"direction": [0,-1,0]}}"#), "opposite ways"),
+        (format!(r#"{up}, {{"direction": [0,-1,0]}}"#), "opposite directions"),
         (format!(r#"{up}, {{"direction": [0,0,0]}}"#), "key 1 of the path (counted from 0) has a direction without"),
         (format!(r#"{up}, {{"azimuth_deg": 3}}"#), "needs either 'direction' or both"),
         (format!(r#"{up}, {{"azimuth_deg": 3, "elevation_deg": 91}}"#), "91 degrees: give -90..=90"),
@@ -51,7 +51,7 @@ fn bad_files_say_what_and_where() {
         (format!(r#"{up}, {{"direction": [1e999,0,0]}}"#), "number out of range"),
     ] {
         let message = keyed(&keys).expect_err("refused").to_string();
-        assert!(message.contains(told), "{keys}: {message}");
+        assert!(message.contains(expected), "{keys}: {message}");
     }
     let order = r#"{"t": 0, "direction": [0,1,0]}, {"t": 0.6, "direction": [1,1,0]}, {"t": 0.5, "direction": [1,0,0]},
         {"t": 1, "direction": [1,0,1]}"#;
@@ -61,14 +61,14 @@ fn bad_files_say_what_and_where() {
 #[test]
 fn bad_sizes_and_positions_are_refused_by_name() {
     let keys = r#""keys": [{"direction": [0,1,0]}, {"direction": [1,1,0]}]"#;
-    for (field, told) in [
+    for (field, expected) in [
         (r#""angular_radius_deg": -1"#, "angular_radius_deg is -1"),
         (r#""angular_radius_deg": 90"#, "angular_radius_deg is 90"),
         (r#""duration_min": 0"#, "duration_min is 0"),
         (r#""positions": [[0,1,0]]"#, "a lamp's has a 'position' in every key"),
     ] {
         let message = parse_keyed(&format!("{{{field}, {keys}}}"), 0.0).expect_err("refused").to_string();
-        assert!(message.contains(told), "{message}");
+        assert!(message.contains(expected), "{message}");
     }
     assert!(matches!(parse_keyed(r#"{"positions": []}"#, 0.0), Err(KeyedError::Positions(_))));
     assert!(matches!(parse_keyed("", 0.0), Err(KeyedError::Keys(KeyError::Json(_)))));

@@ -7,13 +7,13 @@ use super::days_follow_trigonometry::path;
 
 fn assert_follows_ephemeris(request: &DayRequest) {
     let path = path(request);
-    let told = path.day.as_ref().expect("a day");
+    let day = path.day.as_ref().expect("a day");
     let place = [request.latitude_deg, request.longitude_deg];
     let ephemeris =
-        Ephemeris::new(place, request.date, told.utc_offset_h, Compass::new(request.north_deg)).expect("one");
+        Ephemeris::new(place, request.date, day.utc_offset_h, Compass::new(request.north_deg)).expect("one");
     for i in 0..=300 {
         let t = f64::from(i) / 300.0;
-        let truth = ephemeris.direction(told.start_min + t * path.duration_min).expect("a direction");
+        let truth = ephemeris.direction(day.start_min + t * path.duration_min).expect("a direction");
         let error = path.direction(t).angle_between(truth).to_degrees();
         assert!(truth.y < 0.0 || error < 0.02, "{request:?}: {error} degrees at t {t}");
     }
