@@ -36,6 +36,7 @@ mod remedy;
 pub mod report;
 pub mod scene;
 pub mod settings;
+pub mod statistics;
 pub mod sun;
 #[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]

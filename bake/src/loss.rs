@@ -2,6 +2,7 @@
 
 use crate::disk::manifest::{ErrorEntry, LossEntry};
 use crate::maps::EncodeLoss;
+use crate::statistics::percentile;
 
 /// Losses of every covered texel so far.
 #[derive(Debug, Default)]
@@ -48,14 +49,10 @@ impl Distribution {
     }
 
     fn finish(mut self, scale: f64) -> LossEntry {
-        let count = self.values.len();
-        if count == 0 {
-            return LossEntry::default();
-        }
-        let (_, p99, _) = self.values.select_nth_unstable_by((count * 99).div_ceil(100).min(count) - 1, f32::total_cmp);
+        let Some(p99) = percentile(&mut self.values, 99, f32::total_cmp) else { return LossEntry::default() };
         LossEntry {
-            mean: self.sum / count as f64 * scale,
-            p99: f64::from(*p99) * scale,
+            mean: self.sum / self.values.len() as f64 * scale,
+            p99: f64::from(p99) * scale,
             worst: f64::from(self.worst) * scale,
             worst_at: self.worst_at,
         }

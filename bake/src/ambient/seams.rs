@@ -12,6 +12,7 @@
 use super::page::Plane;
 use crate::atlas::{Atlas, Footprint, PageSamples, PageSize};
 use crate::scene::{Geometry, Scene, ShadingNormals};
+use crate::statistics;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -140,7 +141,7 @@ impl Seams {
         let at = |share: f64| {
             apart.get(((count as f64 * share) as usize).min(count.wrapping_sub(1))).copied().unwrap_or(0.0)
         };
-        let mean = apart.iter().sum::<f64>() / (count as f64).max(1.0);
+        let mean = statistics::mean(apart.iter().copied());
         let points = weights.len() as u64;
         Mismatch { points, differing: points - count as u64, mean, p99: at(0.99), worst: at(1.0) }
     }

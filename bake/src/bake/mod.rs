@@ -15,7 +15,7 @@ use crate::disk::write::{SetWriter, WriteError};
 use crate::glb::{self, GlbTooLarge, Occlusion};
 use crate::lamp::{self, LampError, LampFileError, LampPath};
 use crate::maps::Lane;
-use crate::plan::{Effect, EffectPlan, LayersNeeded};
+use crate::plan::{Effect, EffectPlan, LayersNeeded, NoSun};
 use crate::progress::{BakeStage, Progress};
 use crate::remedy::Setting;
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene, ShadingNormals};
@@ -167,7 +167,7 @@ fn prepare_scene(mut scene: Scene, settings: &BakeSettings) -> Result<Prepared, 
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
     let path = if is_lamp_alone { None } else { sun_path(&settings.sun, &scene, &mut warnings)? };
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
-    let no_sun = if is_lamp_alone { "a lamp is baked instead" } else { "the sun does not rise" };
+    let no_sun = if is_lamp_alone { NoSun::LampInstead } else { NoSun::DoesNotRise };
     let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
     Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: 0.0 })
 }
@@ -287,7 +287,7 @@ fn bake_prepared(
         scene: SceneEntry { sha256: Some(scene::sha256(&written.bytes)), ..manifest.scene },
         atlases,
         instances: instance_entries(scene, atlas, &written),
-        effects: plan.clone().settled(needed).entries(),
+        effects: plan.clone().after_bake(needed).entries(),
         ..manifest
     };
     check_cancelled(progress)?;

@@ -1,6 +1,7 @@
 //! How wrong an answer is: of lists of times, and of soft visibility through the day.
 
 use super::report::ErrorEntry;
+use crate::statistics::{self, percentile};
 use crate::maps::Lane;
 use crate::sun::SunPath;
 use crate::visibility::Intervals;
@@ -56,19 +57,16 @@ pub(super) fn of_disc(answers: &[Intervals], lanes: &[Lane], path: &SunPath, sta
 
 /// Path time that one of two is wrong by, if the other is right: the mean of their differences at the moments.
 pub(super) fn apart_t(a: &[f32], b: &[f32]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / a.len().max(1) as f64
+    statistics::mean(a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())))
 }
 
 /// Mean, percentile and worst; none of nothing.
 pub(super) fn distribution(mut errors: Vec<f64>) -> Option<ErrorEntry> {
-    let count = errors.len();
-    if count == 0 {
-        return None;
-    }
-    let mean = errors.iter().sum::<f64>() / count as f64;
-    let rms = (errors.iter().map(|error| error * error).sum::<f64>() / count as f64).sqrt();
-    errors.sort_by(f64::total_cmp);
-    Some(ErrorEntry { mean, rms, p99: errors[(count * 99).div_ceil(100) - 1], worst: errors[count - 1] })
+    let mean = statistics::mean(errors.iter().copied());
+    let rms = statistics::mean(errors.iter().map(|error| error * error)).sqrt();
+    let p99 = percentile(&mut errors, 99, f64::total_cmp)?;
+    let worst = errors.into_iter().max_by(f64::total_cmp)?;
+    Some(ErrorEntry { mean, rms, p99, worst })
 }
 
 #[cfg(test)]

@@ -1,19 +1,22 @@
 //! The effect plan: which effects this scene and request call for, decided before anything runs.
 //!
-//! Each effect is on or off for a reason, with what it costs and what turns it over; and what is off costs nothing: no
-//! ray, no texture, no loop. One effect cannot be known before: how many layers texels need. It is on where they may have
-//! several, and [`EffectPlan::settled`] says how it came out.
+//! `times.rs`, `surfaces.rs` and `ambient.rs` decide and keep the facts they decided by; `wording.rs` puts a decision into
+//! sentences; `columns.rs` sets them in columns. What is off costs nothing: no ray, no texture, no loop. One effect is known only
+//! afterwards: how many layers texels need. It is on where there may be several, and [`EffectPlan::after_bake`] corrects it.
 
 mod ambient;
+mod columns;
+mod surfaces;
 mod times;
 mod wording;
 
-pub use wording::{in_words, said};
+pub use columns::{in_words, labelled};
 
 use crate::disk::manifest::EffectEntry;
 use crate::lamp::LampPath;
+use crate::maps::Bits;
 use crate::scene::Scene;
-use crate::settings::BakeSettings;
+use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
 use crate::sun::SunPath;
 
 /// An effect that a bake may hold.
@@ -23,17 +26,17 @@ pub enum Effect {
     SunIntervals,
     /// Times at which texels see a lamp that moves through the scene.
     LampIntervals,
-    /// A light of some width: edges soften as it crosses them.
+    /// A light with a width: shadow edges are soft along its path.
     Penumbra,
     /// Several paths across the sun's disc.
     DiscLanes,
-    /// Room for more than four intervals a texel.
+    /// More than one layer of four intervals.
     SeveralLayers,
     /// Times of 16 bits, not 8.
     SixteenBitTimes,
-    /// Where storing lost minutes.
+    /// Minutes that storing lost, texel by texel.
     LossMap,
-    /// Rays look up alpha.
+    /// Alpha-masked surfaces: rays look up alpha.
     AlphaCut,
     /// Surfaces that are lit from both sides.
     DoubleSided,
@@ -41,11 +44,11 @@ pub enum Effect {
     AmbientOcclusion,
     /// Nothing beyond a distance hides the sky.
     AmbientDistance,
-    /// From where texels see the sky.
+    /// The mean direction in which texels see the sky.
     BentNormals,
-    /// How a sky of any brightness adds up at texels.
+    /// Sky visibility in spherical harmonics.
     SkyHarmonics,
-    /// Openness of vertices.
+    /// Ambient visibility of vertices.
     VertexAmbient,
     /// Ambient light as numbers, beside its textures.
     AmbientNumbers,
@@ -74,29 +77,107 @@ impl Effect {
     }
 }
 
-/// One effect's verdict.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Why there is no sun in a bake.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoSun {
+    /// The request asks for no times.
+    NotAsked,
+    /// A lamp is baked instead.
+    LampInstead,
+    /// The sun does not rise.
+    DoesNotRise,
+}
+
+/// What an effect was decided by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Facts {
+    /// Times of the sun.
+    Sun {
+        /// Arcs of the sun's path, or why there is none.
+        arcs: Result<usize, NoSun>,
+        /// Bits of a stored time.
+        bits: Bits,
+        /// How lit intervals are found.
+        engine: EngineChoice,
+    },
+    /// Times of a lamp.
+    Lamp {
+        /// Straight segments of its path, if there is a lamp.
+        segments: Option<usize>,
+        /// Bits of a stored time.
+        bits: Bits,
+        /// How lit intervals are found.
+        engine: EngineChoice,
+    },
+    /// Penumbras.
+    Widths {
+        /// Angular radius of the sun, if there is a sun.
+        sun_radius_deg: Option<f64>,
+        /// Radius of the lamp, if there is a lamp.
+        lamp_radius_m: Option<f64>,
+    },
+    /// Lanes across the sun's disc.
+    Lanes {
+        /// How many are asked for.
+        count: usize,
+        /// Whether the sun has a width, if there is a sun.
+        has_width: Option<bool>,
+    },
+    /// Layers of four intervals.
+    Layers {
+        /// How many are allowed.
+        cap: usize,
+        /// Whether times are stored.
+        has_times: bool,
+        /// Bits of a stored time.
+        bits: Bits,
+        /// How many were needed; known after the bake.
+        needed: Option<LayersNeeded>,
+    },
+    /// Bits of times.
+    Depth {
+        /// Bits of a stored time.
+        bits: Bits,
+        /// Half the time between two codes, in seconds; none where no times are stored.
+        half_step_s: Option<f64>,
+    },
+    /// Loss maps.
+    Losses {
+        /// Whether they are asked for.
+        is_asked: bool,
+        /// Whether times are stored.
+        has_times: bool,
+    },
+    /// Surfaces of a kind.
+    Surfaces {
+        /// How many are drawn.
+        surfaces: usize,
+        /// Their triangles.
+        triangles: usize,
+    },
+    /// Ambient light, if it is asked for.
+    Ambient(Option<AmbientRequest>),
+}
+
+/// Whether one effect is part of the bake.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Decision {
     /// Which effect.
     pub effect: Effect,
     /// Whether it is part of the bake.
     pub is_on: bool,
-    /// Why.
-    pub why: String,
-    /// What it costs while it is on; of what is off, what it would.
-    pub cost: String,
-    /// The flag, or the property of the scene, that would turn it over.
-    pub toggled_by: String,
+    /// What this was decided by.
+    pub facts: Facts,
 }
 
-/// All verdicts, in the order of [`Effect`].
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// The decisions on all effects, in the order of [`Effect`].
+#[derive(Debug, Clone, PartialEq)]
 pub struct EffectPlan {
     /// One per effect.
     pub decisions: Vec<Decision>,
 }
 
-/// What texels turned out to need.
+/// How many layers texels turned out to need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LayersNeeded {
     /// Most layers of a lane, or of the lamp, on any page.
@@ -108,20 +189,20 @@ pub struct LayersNeeded {
 }
 
 impl EffectPlan {
-    /// Decides from the scene, the paths and what is asked for; `no_sun` says why there is no sun's path.
+    /// Decides from the scene, the paths and what is asked for; `no_sun` says why there is no sun's path, where there is none.
     pub fn new(
         scene: &Scene,
         path: Option<&SunPath>,
         lamp: Option<&LampPath>,
         settings: &BakeSettings,
-        no_sun: &str,
+        no_sun: NoSun,
     ) -> Self {
         let is_asked = settings.bakes_intervals;
         let path = path.filter(|_| is_asked);
-        let no_sun = if is_asked { no_sun } else { times::NOT_ASKED };
+        let no_sun = if is_asked { no_sun } else { NoSun::NotAsked };
         let of_times = times::Times { path, lamp, settings, no_sun }.decisions();
-        let decisions = of_times.into_iter().chain(times::of_surfaces(scene)).chain(ambient::decisions(settings));
-        Self { decisions: decisions.collect() }
+        let of_ambient = ambient::decisions(settings.ambient);
+        Self { decisions: of_times.into_iter().chain(surfaces::decisions(scene)).chain(of_ambient).collect() }
     }
 
     /// How many lanes the bake has, of as many as were asked for.
@@ -134,23 +215,18 @@ impl EffectPlan {
         self.decisions.iter().any(|d| d.effect == effect && d.is_on)
     }
 
-    /// The plan as it came out.
-    pub fn settled(mut self, needed: LayersNeeded) -> Self {
-        let has_times = self.is_on(Effect::SunIntervals) || self.is_on(Effect::LampIntervals);
-        let layers = self.decisions.iter_mut().filter(|d| d.effect == Effect::SeveralLayers && has_times);
-        layers.for_each(|decision| times::settle(decision, needed));
+    /// The plan corrected by how many layers texels turned out to need.
+    pub fn after_bake(mut self, found: LayersNeeded) -> Self {
+        for decision in &mut self.decisions {
+            if let Facts::Layers { has_times: true, needed, .. } = &mut decision.facts {
+                (*needed, decision.is_on) = (Some(found), found.layers > 1);
+            }
+        }
         self
     }
 
     /// For the manifest.
     pub fn entries(&self) -> Vec<EffectEntry> {
-        let entry = |d: &Decision| EffectEntry {
-            effect: d.effect.name().into(),
-            on: d.is_on,
-            why: d.why.clone(),
-            cost: d.cost.clone(),
-            toggled_by: d.toggled_by.clone(),
-        };
-        self.decisions.iter().map(entry).collect()
+        self.decisions.iter().map(wording::entry).collect()
     }
 }

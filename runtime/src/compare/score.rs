@@ -11,6 +11,7 @@ use crate::light::{LUMINANCE, codes_from_display, display_from_light};
 use glam::Vec3;
 use image_compare::{Algorithm, gray_similarity_structure};
 use serde::{Deserialize, Serialize};
+use sunbake::statistics::percentile;
 
 /// A pixel with a larger error is wrong: lit where it is dark, or dark where it is lit.
 pub const WRONG: f32 = 0.5;
@@ -95,7 +96,7 @@ impl Tally {
         Score {
             pixels: count as u64,
             mean: mean(all),
-            p99: percentile(&self.errors, 99),
+            p99: percentile(&mut self.errors.clone(), 99, f32::total_cmp).map_or(0.0, f64::from),
             worst: f64::from(self.errors.iter().copied().fold(0.0, f32::max)),
             wrong_share: share(wrong),
             penumbra: (self.in_penumbra.1 > 0).then(|| mean(self.in_penumbra)),
@@ -105,16 +106,6 @@ impl Tally {
             not_numbers: self.not_numbers,
         }
     }
-}
-
-/// The value that `percent` in a hundred do not exceed; 0 without values.
-fn percentile(values: &[f32], percent: usize) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let mut values = values.to_vec();
-    let rank = (values.len() * percent).div_ceil(100).max(1) - 1;
-    f64::from(*values.select_nth_unstable_by(rank, f32::total_cmp).1)
 }
 
 /// The luma of a lit picture, as a display shows it.

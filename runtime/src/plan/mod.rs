@@ -18,7 +18,7 @@ pub use census::Census;
 pub use effect::{Effect, Reason, Uncounted};
 
 use sunbake::disk::manifest::EffectEntry;
-use sunbake::plan::{in_words, said};
+use sunbake::plan::{in_words, labelled};
 
 /// The decision about one effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,6 +102,6 @@ impl DrawPlan {
         let text = in_words(&self.entries());
         let all = self.totals.in_words();
         let heading = if self.is_exact { "  in all" } else { "  in all, at most" };
-        if all.is_empty() { text } else { text + &said(heading, &all) }
+        if all.is_empty() { text } else { text + &labelled(heading, &all) }
     }
 }

@@ -1,0 +1,21 @@
+//! What is decided about surfaces.
+
+use super::{Decision, Effect, Facts};
+use crate::scene::{Alpha, Material, Scene};
+
+/// What the scene's materials call for.
+pub(super) fn decisions(scene: &Scene) -> [Decision; 2] {
+    [
+        of_surfaces(scene, Effect::AlphaCut, |material| matches!(material.alpha, Alpha::Cut { .. })),
+        of_surfaces(scene, Effect::DoubleSided, |material| material.is_double_sided && material.alpha != Alpha::Air),
+    ]
+}
+
+/// An effect that is on where some drawn surface has such a material.
+fn of_surfaces(scene: &Scene, effect: Effect, has_effect: impl Fn(&Material) -> bool) -> Decision {
+    let instances = scene.instances.iter().enumerate().filter(|(index, _)| has_effect(scene.material(*index)));
+    let [surfaces, triangles] = instances.fold([0, 0], |[surfaces, triangles], (_, instance)| {
+        [surfaces + 1, triangles + scene.meshes[instance.mesh].triangle_count()]
+    });
+    Decision { effect, is_on: surfaces > 0, facts: Facts::Surfaces { surfaces, triangles } }
+}
