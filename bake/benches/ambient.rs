@@ -107,7 +107,7 @@ impl<'a> Page<'a> {
         };
         let runs = solve_ambient(engine, texels.len(), texel, |_| true).expect("nobody stops it");
         let rays = runs.iter().map(|run| run.rays).sum();
-        (runs.iter().flat_map(|run| &run.front).map(|estimate| f64::from(estimate.open)).collect(), rays)
+        (runs.iter().flat_map(|run| &run.front).map(|estimate| f64::from(estimate.visibility)).collect(), rays)
     }
 }
 

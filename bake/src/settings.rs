@@ -58,15 +58,15 @@ pub struct AmbientRequest {
     /// Points of a texel along each of its edges, 1 to 8, usually 1 or 2, on which its rays are spread. Takes no more rays:
     /// it trades noise within a texel for what a single point would miss.
     pub supersample: u32,
-    /// Bits of a stored openness; bent normals and the sky always have 16.
+    /// Bits of stored ambient visibility; bent normals and the sky always have 16.
     pub bits: Bits,
     /// Whether the numbers themselves are written beside the textures, as OpenEXR of `f32`.
     pub exr: bool,
-    /// Whether, and how, openness is also stored at vertices.
+    /// Whether, and how, ambient visibility is also stored at vertices.
     pub vertices: Option<VertexAttribute>,
 }
 
-/// How openness is stored at vertices.
+/// How ambient visibility is stored at vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VertexAttribute {
     /// Multiplied into `COLOR_0`, which every viewer multiplies into the base colour.
@@ -86,7 +86,7 @@ impl VertexAttribute {
 }
 
 impl AmbientRequest {
-    /// So many rays a texel, openness alone.
+    /// This many rays a texel, ambient visibility only.
     pub fn with_rays(rays: u32) -> Self {
         let estimate =
             AmbientSettings { rays, distance_m: None, error: None, wants_bent: false, wants_sky: false, seed: 0 };

@@ -3,7 +3,7 @@
 
 use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
-use crate::maps::{AmbientSide, Bits, LaneMaps, decode_open, decode_signed, stored_intervals};
+use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
 use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
 use crate::trace::Tracer;
 use glam::DVec3;
@@ -116,7 +116,7 @@ fn describe(
 }
 
 fn ambient_visibility(side: &AmbientSide, texel: usize) -> f64 {
-    f64::from(decode_open(side.open[texel]))
+    f64::from(decode_share(side.visibility[texel]))
 }
 
 fn decoded(code: u16) -> f64 {

@@ -7,7 +7,7 @@ use glam::{IVec2, Vec2, Vec3};
 use sunbake::ambient::harmonics;
 use sunbake::atlas::{Footprint, PageSize};
 use sunbake::maps::{
-    AmbientMaps, AmbientSide, AmbientTextures, Bits, PageMaps, decode_open, decode_signed, hard_visibility,
+    AmbientMaps, AmbientSide, AmbientTextures, Bits, PageMaps, decode_share, decode_signed, hard_visibility,
     soft_visibility,
 };
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
@@ -129,7 +129,7 @@ impl<'a> Page<'a> {
         let Some(ambient) = &self.maps.ambient else { return hemisphere(share_of_normal) };
         let side = ambient_side(ambient, is_back);
         let footprint = self.footprint(page_uv);
-        let occlusion = || footprint.blend(|texel| decode_open(side.open[texel]));
+        let occlusion = || footprint.blend(|texel| decode_share(side.visibility[texel]));
         match (&side.sky, &side.bent) {
             (Some(codes), _) => {
                 let light_at = |texel: usize| {

@@ -91,7 +91,7 @@ fn ambient_occlusion_is_bound_only_where_a_set_has_it() {
         assert_eq!(found.time_textures, 0);
         (found.ambient_textures, found.sky_bindings, found.map_bytes / texels as u64)
     };
-    let open = AmbientSide { open: vec![40_000; texels], ..AmbientSide::default() };
+    let open = AmbientSide { visibility: vec![40_000; texels], ..AmbientSide::default() };
     let bent = AmbientSide { bent: Some(vec![[40_000; 3]; texels]), ..open.clone() };
     let sky = AmbientSide { sky: Some(vec![[40_000; 9]; texels]), ..bent.clone() };
     assert_eq!(with(open.clone(), None), (1, 0, 2));

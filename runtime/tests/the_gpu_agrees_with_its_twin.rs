@@ -112,7 +112,7 @@ fn noisy_ambient(stage: &Stage, sides: usize) -> AmbientMaps {
     let mut state = 11;
     let mut code = || (pseudo_random(&mut state) * 65_535.0) as u16;
     let mut side = || AmbientSide {
-        open: (0..texels).map(|_| code()).collect(),
+        visibility: (0..texels).map(|_| code()).collect(),
         bent: Some((0..texels).map(|_| [0; 3].map(|_: u16| code())).collect()),
         sky: Some((0..texels).map(|_| [0; 9].map(|_: u16| code())).collect()),
     };

@@ -21,7 +21,7 @@ pub fn ambient_at(traced: &Traced, points: &[AmbientPoint], settings: AmbientSet
 /// Ambient visibility at each of these points: 1 where nothing hides the hemisphere.
 pub fn ambient_visibility(traced: &Traced, points: &[AmbientPoint], settings: AmbientSettings) -> Vec<f64> {
     let (estimates, _) = ambient_at(traced, points, settings);
-    estimates.iter().map(|estimate| f64::from(estimate.open)).collect()
+    estimates.iter().map(|estimate| f64::from(estimate.visibility)).collect()
 }
 
 /// A point whose shading normal is its plane's.

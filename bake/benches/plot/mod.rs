@@ -24,7 +24,7 @@ pub fn draw(file: &Path, scenes: &[Scene]) -> Result<(), Box<dyn Error>> {
             .configure_mesh()
             .light_line_style(TRANSPARENT)
             .x_desc("microseconds a texel, one thread")
-            .y_desc("rms error of openness")
+            .y_desc("rms error of ambient visibility")
             .x_label_formatter(&|x| format!("{x}"))
             .y_label_formatter(&|y| format!("{y}"))
             .draw()?;

@@ -7,8 +7,8 @@
 //! of 2^m of its points has one in every elementary box of area 2^-m, so that the error of a mean falls faster than that of
 //! independent points.
 //!
-//! Practice: the same property says where a block's points lie before they are drawn. Sorted by the cell that each is
-//! in, the rays of neighbouring texels go nearly the same way, cell by cell, and ask for the same part of the hierarchy.
+//! Practice: by the same property, a block has exactly one point in each cell of the square. Sorted by cell, the rays of
+//! neighbouring texels have nearly the same direction and visit the same part of the hierarchy.
 
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -16,50 +16,50 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Most rays that are sorted together.
 pub(super) const BLOCK: u32 = 256;
-/// How many sequences there are at most. Texels that ask together all have different ones; which other texels share one is
-/// left to chance, so that errors look like noise.
+/// Most sequences. All texels of a packet have different ones; which other texels share one is random, so that errors look
+/// like noise.
 const MOST_SEQUENCES: u32 = 64;
-/// Rays of all sequences together, above which there are fewer sequences.
-const MOST_DRAWS: u32 = 1 << 20;
-/// Fewest sequences: more than texels ask together.
+/// Most directions of all sequences together: with many rays there are fewer sequences.
+const MOST_DIRECTIONS: u32 = 1 << 20;
+/// Fewest sequences: more than a packet has texels.
 const LEAST_SEQUENCES: u32 = 32;
 
-/// DirectionSets of several sequences, ready to be used.
+/// Directions of several sequences, computed once.
 pub(super) struct DirectionSets {
     sequences: Vec<Vec<DirectionSample>>,
 }
 
-/// A direction about a normal, and a number in [0, 1) to pick one of a texel's points with.
+/// A direction about a normal, and a number in [0, 1) that selects one of a texel's points.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct DirectionSample {
-    /// Across, across and along the normal.
+    /// Unit vector; z is along the normal.
     pub local: Vec3,
     pub pick: f32,
 }
 
 impl DirectionSets {
     /// `rays` of each sequence, in blocks of the given lengths, which add up to it. Each is a power of two up to [`BLOCK`]
-    /// and starts at a multiple of itself; its draws are in the order of [`cell`].
+    /// and starts at a multiple of itself; its directions are in the order of [`cell`].
     pub fn new(seed: u32, rays: u32, blocks: &[u32]) -> Self {
-        let count = (MOST_DRAWS / rays).clamp(LEAST_SEQUENCES, MOST_SEQUENCES);
+        let count = (MOST_DIRECTIONS / rays).clamp(LEAST_SEQUENCES, MOST_SEQUENCES);
         let sequence = |index: u32| {
-            let mut draws = vec![DirectionSample::default(); rays as usize];
+            let mut directions = vec![DirectionSample::default(); rays as usize];
             let mut first = 0;
             for &length in blocks {
-                draw_block(
+                sample_block(
                     seed.wrapping_mul(MOST_SEQUENCES) + index,
                     first,
                     length,
-                    &mut draws[first as usize..][..length as usize],
+                    &mut directions[first as usize..][..length as usize],
                 );
                 first += length;
             }
-            draws
+            directions
         };
         Self { sequences: (0..count).into_par_iter().map(sequence).collect() }
     }
 
-    /// The sequence of a texel: another one for each seed up to their number.
+    /// The sequence of a texel. Consecutive seeds have different sequences.
     #[inline]
     pub fn of(&self, seed: u32) -> &[DirectionSample] {
         &self.sequences[seed as usize % self.sequences.len()]
@@ -67,12 +67,12 @@ impl DirectionSets {
 }
 
 /// Rays `first..first + count` of a sequence, one a cell of the square, in the order of [`cell`].
-pub(super) fn draw_block(seed: u32, first: u32, count: u32, draws: &mut [DirectionSample]) {
+pub(super) fn sample_block(seed: u32, first: u32, count: u32, directions: &mut [DirectionSample]) {
     for index in first..first + count {
         let [x, y, pick, _] = sobol_burley::sample_4d(index, 0, seed);
         let disc = on_disc(Vec2::new(x, y));
         let up = (1.0 - disc.length_squared()).max(0.0).sqrt();
-        draws[cell([x, y], count) as usize] = DirectionSample { local: disc.extend(up), pick };
+        directions[cell([x, y], count) as usize] = DirectionSample { local: disc.extend(up), pick };
     }
 }
 
@@ -87,20 +87,20 @@ fn cell([x, y]: [f32; 2], count: u32) -> u32 {
 
 /// Three axes with a normal as the last.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct NormalFrame {
     across: [DVec3; 2],
     normal: DVec3,
 }
 
-impl Frame {
+impl NormalFrame {
     pub fn new(normal: DVec3) -> Self {
         Self { across: normal.any_orthonormal_pair().into(), normal }
     }
 
     /// A direction about the normal.
     #[inline]
-    pub fn direction(&self, draw: &DirectionSample) -> DVec3 {
-        let local = draw.local.as_dvec3();
+    pub fn direction(&self, sample: &DirectionSample) -> DVec3 {
+        let local = sample.local.as_dvec3();
         self.across[0] * local.x + self.across[1] * local.y + self.normal * local.z
     }
 }
@@ -126,9 +126,12 @@ mod tests {
     #[test]
     fn every_aligned_block_has_one_point_in_every_cell() {
         for (seed, first, count) in [(0, 0, 1), (1, 0, 2), (7, 64, 64), (9, 128, 128), (123_456, 768, 256)] {
-            let mut draws = vec![DirectionSample { local: Vec3::NAN, pick: 0.0 }; count as usize];
-            draw_block(seed, first, count, &mut draws);
-            assert!(draws.iter().all(|draw| draw.local.is_finite()), "seed {seed}, {count} points from {first}");
+            let mut directions = vec![DirectionSample { local: Vec3::NAN, pick: 0.0 }; count as usize];
+            sample_block(seed, first, count, &mut directions);
+            assert!(
+                directions.iter().all(|sample| sample.local.is_finite()),
+                "seed {seed}, {count} points from {first}"
+            );
         }
     }
 
@@ -150,13 +153,13 @@ mod tests {
     #[test]
     fn directions_are_unit_and_as_dense_as_the_cosine() {
         let normal = DVec3::new(0.3, -0.5, 0.2).normalize();
-        let frame = Frame::new(normal);
-        let mut draws = vec![DirectionSample::default(); 256];
-        draw_block(5, 0, 256, &mut draws);
-        let directions: Vec<DVec3> = draws.iter().map(|draw| frame.direction(draw)).collect();
-        assert!(directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-6 && d.dot(normal) >= 0.0));
+        let frame = NormalFrame::new(normal);
+        let mut directions = vec![DirectionSample::default(); 256];
+        sample_block(5, 0, 256, &mut directions);
+        let found: Vec<DVec3> = directions.iter().map(|sample| frame.direction(sample)).collect();
+        assert!(found.iter().all(|d| (d.length() - 1.0).abs() < 1e-6 && d.dot(normal) >= 0.0));
         // Means over a cosine-weighted hemisphere: cos is 2/3, cos^2 is 1/2.
-        let mean = |f: &dyn Fn(f64) -> f64| directions.iter().map(|d| f(d.dot(normal))).sum::<f64>() / 256.0;
+        let mean = |f: &dyn Fn(f64) -> f64| found.iter().map(|d| f(d.dot(normal))).sum::<f64>() / 256.0;
         assert!((mean(&|c| c) - 2.0 / 3.0).abs() < 2e-3 && (mean(&|c| c * c) - 0.5).abs() < 2e-3);
     }
 }

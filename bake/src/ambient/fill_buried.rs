@@ -1,48 +1,50 @@
-//! What buried texels show.
+//! Values of buried texels.
 //!
-//! Nobody sees a texel inside a solid, but a filter at the solid's border reads it: black, it would draw a dark line around
-//! every stone that stands in the ground. So a buried texel beside one that can be seen shows what the darkest such
-//! neighbour does. The darkest, not the nearest or the mean: where a wall is thinner than a texel, the light before it
-//! must not come through to the scratch behind. Texels deeper inside stay 0.
+//! A texel inside a solid is never seen, but a filter at the solid's border reads it. Were it black, there would be a dark line
+//! around every stone that stands in the ground. So a buried texel beside a visible one takes the value of its darkest visible
+//! neighbour. Not of the nearest, nor the mean: where a wall is thinner than a texel, light from in front of it must not leak into
+//! the room behind. Texels deeper inside stay 0.
 
 use crate::atlas::PageSize;
 
 /// Which texels are covered, and which of them are buried.
 pub(super) struct BuriedTexels {
     size: PageSize,
-    texels: Vec<State>,
+    texels: Vec<TexelKind>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
-    Empty,
-    Seen,
+enum TexelKind {
+    Uncovered,
+    Visible,
     Buried,
 }
 
 impl BuriedTexels {
     pub fn new(size: PageSize) -> Self {
-        Self { size, texels: vec![State::Empty; size.texel_count()] }
+        Self { size, texels: vec![TexelKind::Uncovered; size.texel_count()] }
     }
 
-    /// Notes a covered texel.
+    /// Adds a covered texel.
     pub fn add(&mut self, texel: usize, is_buried: bool) {
-        self.texels[texel] = if is_buried { State::Buried } else { State::Seen };
+        self.texels[texel] = if is_buried { TexelKind::Buried } else { TexelKind::Visible };
     }
 
-    /// Buried texels that show another, and that other, given how open each is. Charts lie two texels apart at least, so
-    /// neighbours that are covered belong to the same.
-    pub fn shown_as(&self, open: &[f32]) -> Vec<(usize, usize)> {
-        let buried = (0..self.texels.len()).filter(|&texel| self.texels[texel] == State::Buried);
-        buried.filter_map(|texel| Some((texel, self.darkest_neighbour(texel, open)?))).collect()
+    /// Buried texels beside a visible one, each with the texel whose value it takes, given the ambient visibility of all texels.
+    /// Charts lie at least two texels apart, so covered neighbours belong to the same chart.
+    pub fn sources(&self, visibility: &[f32]) -> Vec<(usize, usize)> {
+        let buried = (0..self.texels.len()).filter(|&texel| self.texels[texel] == TexelKind::Buried);
+        buried.filter_map(|texel| Some((texel, self.darkest_neighbour(texel, visibility)?))).collect()
     }
 
-    fn darkest_neighbour(&self, texel: usize, open: &[f32]) -> Option<usize> {
+    fn darkest_neighbour(&self, texel: usize, visibility: &[f32]) -> Option<usize> {
         let (width, height) = (self.size.width as usize, self.size.height as usize);
         let (x, y) = (texel % width, texel / width);
         let rows = y.saturating_sub(1)..(y + 2).min(height);
         let around = rows.flat_map(|y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| y * width + x));
-        around.filter(|&t| self.texels[t] == State::Seen).min_by(|&a, &b| open[a].total_cmp(&open[b]))
+        around
+            .filter(|&t| self.texels[t] == TexelKind::Visible)
+            .min_by(|&a, &b| visibility[a].total_cmp(&visibility[b]))
     }
 }
 
@@ -51,15 +53,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn buried_texels_show_their_darkest_seen_neighbour_and_deeper_ones_nothing() {
+    fn buried_texels_take_their_darkest_visible_neighbour_and_deeper_ones_stay_0() {
         let size = PageSize { width: 6, height: 1 };
         let mut buried_texels = BuriedTexels::new(size);
         for (texel, is_buried) in [(0, false), (1, true), (2, true), (3, true), (4, false)] {
             buried_texels.add(texel, is_buried);
         }
-        assert_eq!(buried_texels.shown_as(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
+        assert_eq!(buried_texels.sources(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
         let mut thin = BuriedTexels::new(size);
         [(0, false), (1, true), (2, false)].iter().for_each(|&(texel, is_buried)| thin.add(texel, is_buried));
-        assert_eq!(thin.shown_as(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0]), [(1, 2)], "light would come through the wall");
+        assert_eq!(thin.sources(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0]), [(1, 2)], "light would come through the wall");
     }
 }

@@ -1,13 +1,10 @@
-//! A page of ambient light: one plane of numbers for each quantity, from estimates to codes.
+//! A page of ambient light: one plane of numbers for each quantity, made from estimates and encoded for storage.
 
 use super::estimate::{Estimate, Estimates};
 use super::fill_buried::BuriedTexels;
 use super::{AmbientSettings, harmonics};
 use crate::atlas::{GutterTexel, PageSamples, PageSize};
-use crate::maps::{AmbientMaps, AmbientSide, encode_open, encode_signed};
-
-/// Numbers of a page, in row order.
-pub type Plane = Vec<f32>;
+use crate::maps::{AmbientMaps, AmbientSide, encode_share, encode_signed};
 
 /// Ambient light of a page, as planes of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,34 +12,34 @@ pub struct AmbientPage {
     /// Its size.
     pub size: PageSize,
     /// What fronts see.
-    pub front: Side,
+    pub front: AmbientPlanes,
     /// What backs see, where some texel has two sides; single-sided texels hold their front's.
-    pub back: Option<Side>,
+    pub back: Option<AmbientPlanes>,
 }
 
-/// One side of a page. Planes that were not asked for are empty lists.
+/// One side of a page: planes of numbers in row order, one per quantity. Planes that were not asked for are absent.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Side {
-    /// Openness.
-    pub open: Plane,
+pub struct AmbientPlanes {
+    /// Ambient visibility, 0 to 1.
+    pub visibility: Vec<f32>,
     /// Bent normals: x, y, z.
-    pub bent: Vec<Plane>,
+    pub bent: Vec<Vec<f32>>,
     /// Sky visibility: nine coefficients.
-    pub sky: Vec<Plane>,
+    pub sky: Vec<Vec<f32>>,
 }
 
-impl Side {
+impl AmbientPlanes {
     fn new(texel_count: usize, settings: &AmbientSettings) -> Self {
         let planes = |is_wanted: bool, count: usize| vec![vec![0.0; texel_count]; if is_wanted { count } else { 0 }];
         Self {
-            open: vec![0.0; texel_count],
+            visibility: vec![0.0; texel_count],
             bent: planes(settings.wants_bent, 3),
             sky: planes(settings.wants_sky, harmonics::COUNT),
         }
     }
 
     fn set(&mut self, texel: usize, estimate: &Estimate) {
-        self.open[texel] = estimate.open;
+        self.visibility[texel] = estimate.visibility;
         self.bent.iter_mut().zip(estimate.bent.to_array()).for_each(|(plane, value)| plane[texel] = value);
         self.sky.iter_mut().zip(estimate.sky).for_each(|(plane, value)| plane[texel] = value);
     }
@@ -52,17 +49,17 @@ impl Side {
     }
 
     /// Every plane.
-    pub fn planes_mut(&mut self) -> impl Iterator<Item = &mut Plane> {
-        std::iter::once(&mut self.open).chain(&mut self.bent).chain(&mut self.sky)
+    pub fn planes_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
+        std::iter::once(&mut self.visibility).chain(&mut self.bent).chain(&mut self.sky)
     }
 
     fn encoded(&self) -> AmbientSide {
-        fn codes<const N: usize>(planes: &[Plane]) -> Option<Vec<[u16; N]>> {
+        fn codes<const N: usize>(planes: &[Vec<f32>]) -> Option<Vec<[u16; N]>> {
             let count = planes.first()?.len();
             Some((0..count).map(|texel| std::array::from_fn(|k| encode_signed(planes[k][texel]))).collect())
         }
         AmbientSide {
-            open: self.open.iter().map(|&open| encode_open(open)).collect(),
+            visibility: self.visibility.iter().map(|&share| encode_share(share)).collect(),
             bent: codes(&self.bent),
             sky: codes(&self.sky),
         }
@@ -70,7 +67,7 @@ impl Side {
 }
 
 impl AmbientPage {
-    /// Lays out estimates, which are in the given order of samples, and settles what buried texels show.
+    /// Lays out estimates, which are in the given order of samples, and fills buried texels.
     pub fn new(
         size: PageSize,
         samples: &PageSamples,
@@ -79,7 +76,7 @@ impl AmbientPage {
         settings: &AmbientSettings,
     ) -> Self {
         let texel_count = size.texel_count();
-        let mut front = Side::new(texel_count, settings);
+        let mut front = AmbientPlanes::new(texel_count, settings);
         let texel_at = |place: usize| samples.samples[order[place] as usize].texel as usize;
         let mut buried_texels = BuriedTexels::new(size);
         let mut start = 0;
@@ -103,7 +100,7 @@ impl AmbientPage {
             }
         }
         for side in std::iter::once(&mut front).chain(&mut back) {
-            for (texel, source) in buried_texels.shown_as(&side.open) {
+            for (texel, source) in buried_texels.sources(&side.visibility) {
                 side.copy(texel, source);
             }
         }
@@ -120,12 +117,12 @@ impl AmbientPage {
     }
 
     /// Both sides, or the one.
-    pub fn sides_mut(&mut self) -> impl Iterator<Item = &mut Side> {
+    pub fn sides_mut(&mut self) -> impl Iterator<Item = &mut AmbientPlanes> {
         std::iter::once(&mut self.front).chain(&mut self.back)
     }
 
     /// The page as it is stored.
     pub fn encoded(&self) -> AmbientMaps {
-        AmbientMaps { front: self.front.encoded(), back: self.back.as_ref().map(Side::encoded) }
+        AmbientMaps { front: self.front.encoded(), back: self.back.as_ref().map(AmbientPlanes::encoded) }
     }
 }

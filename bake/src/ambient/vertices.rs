@@ -1,13 +1,13 @@
-//! Openness of vertices, for engines without a second set of texture coordinates.
+//! Ambient visibility of vertices, for engines without a second set of texture coordinates.
 //!
-//! A vertex stands for the surface around it: its rays start from a point in each triangle that meets there, an eighth of
-//! the way to the triangle's middle, so that none starts on an edge where walls meet. Points inside a solid are passed over,
-//! else every vertex that touches the ground would be darkened from below. Vertices of an instance that share a place and a
-//! normal (cut apart by texture coordinates, say) share their openness. What a triangle is too large to show between its
-//! corners, vertices cannot hold (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4),
+//! A vertex stands for the surface around it. Its rays start from one point in each of its triangles, an eighth of the way to the
+//! triangle's middle, so that none starts on an edge where walls meet. Points inside a solid are skipped; otherwise every vertex
+//! that touches the ground would be darkened from below. Vertices of an instance with the same position and normal (split by
+//! texture coordinates, for instance) share one value. Vertices cannot hold detail inside a large triangle (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4),
 //! 2011, discuss what they can).
 
-use super::estimate::{AmbientEngine, AmbientPoint, Estimates, solve_ambient};
+use super::estimate::{AmbientEngine, Estimates, solve_ambient};
+use super::point::AmbientPoint;
 use crate::atlas::SurfacePoint;
 use crate::scene::{Geometry, Scene, ShadingNormals};
 use std::collections::HashMap;
@@ -15,9 +15,9 @@ use std::collections::HashMap;
 /// How far a corner's point is moved towards the middle of its triangle.
 const PULL: f64 = 0.125;
 
-/// For each instance, how open each vertex of its mesh is, 0 to 1; of double-sided surfaces, the side that sees more. Instances
-/// that are air read 1. `on_progress` gets the number of places that were done and returns false to stop; then there is no
-/// answer. With it come the rays traced.
+/// For each instance, the ambient visibility of each vertex of its mesh, 0 to 1; of double-sided surfaces, that of the side with
+/// more. Instances that are air have 1. `on_progress` gets the number of positions that were done and returns false to stop; then
+/// there is no answer. The second value is the number of rays traced.
 pub fn ambient_visibility_of_vertices(
     engine: &AmbientEngine,
     scene: &Scene,
@@ -33,30 +33,31 @@ pub fn ambient_visibility_of_vertices(
     let texel =
         |place: usize, points: &mut Vec<AmbientPoint>| engine.add_visible(corners[place].iter().copied(), points);
     let runs = solve_ambient(engine, corners.len(), texel, on_progress)?;
-    let open = more_open_sides(&runs);
-    let of_instance = |places: Vec<u32>| places.iter().map(|&place| value(&open, place)).collect();
+    let visibility = lighter_sides(&runs);
+    let of_instance = |places: Vec<u32>| places.iter().map(|&place| value(&visibility, place)).collect();
     Some((places.into_iter().map(of_instance).collect(), runs.iter().map(|run| run.rays).sum()))
 }
 
-/// A place without a triangle is open.
-fn value(open: &[f32], place: u32) -> f32 {
-    open.get(place as usize).copied().unwrap_or(1.0)
+/// A vertex without a triangle has 1.
+fn value(visibility: &[f32], place: u32) -> f32 {
+    visibility.get(place as usize).copied().unwrap_or(1.0)
 }
 
-fn more_open_sides(runs: &[Estimates]) -> Vec<f32> {
-    let mut open = Vec::new();
+fn lighter_sides(runs: &[Estimates]) -> Vec<f32> {
+    let mut visibility = Vec::new();
     for run in runs {
-        let first = open.len();
-        open.extend(run.front.iter().map(|front| front.open));
+        let first = visibility.len();
+        visibility.extend(run.front.iter().map(|front| front.visibility));
         for (index, back) in &run.back {
-            let side = &mut open[first + *index as usize];
-            *side = side.max(back.open);
+            let side = &mut visibility[first + *index as usize];
+            *side = side.max(back.visibility);
         }
     }
-    open
+    visibility
 }
 
-/// Adds the places of an instance's vertices, and gives back the place of each vertex; none for a vertex without a triangle.
+/// Adds the points of an instance's vertices to `places`, one entry per position and normal. Gives the entry of each vertex, or
+/// `u32::MAX` for a vertex without a triangle.
 fn gather(
     scene: &Scene,
     geometry: &Geometry,
@@ -114,7 +115,7 @@ mod tests {
     use crate::trace::Tracer;
     use glam::Vec3;
 
-    fn open_of(scene: &Scene) -> Vec<Vec<f32>> {
+    fn visibility_of(scene: &Scene) -> Vec<Vec<f32>> {
         let geometry = Geometry::new(scene);
         let tracer = Tracer::new(scene, &geometry);
         let engine = AmbientEngine::new(scene, &geometry, &tracer, AmbientRequest::with_rays(1024).estimate);
@@ -122,12 +123,12 @@ mod tests {
     }
 
     #[test]
-    fn a_vertex_inside_a_solid_reads_nothing_and_takes_nothing_from_the_next() {
+    fn a_vertex_inside_a_solid_is_dark_and_darkens_no_other() {
         let ground = block(Vec3::new(-50.0, -9.0, -50.0), Vec3::new(50.0, 0.0, 50.0));
         let stake = block(Vec3::new(-0.5, -2.0, -0.5), Vec3::new(0.5, 1.0, 0.5));
         let scene = SceneBuilder::new().soup(&ground).soup(&stake).build();
-        for (position, &open) in scene.meshes[1].positions.iter().zip(&open_of(&scene)[1]) {
-            assert!(if position.y < 0.0 { open == 0.0 } else { open > 0.5 }, "{open} at {position}");
+        for (position, &visibility) in scene.meshes[1].positions.iter().zip(&visibility_of(&scene)[1]) {
+            assert!(if position.y < 0.0 { visibility == 0.0 } else { visibility > 0.5 }, "{visibility} at {position}");
         }
     }
 
@@ -137,11 +138,11 @@ mod tests {
         let ground = block(Vec3::new(-500.0, -1.0, -500.0), Vec3::new(500.0, 0.0, 500.0));
         let cube = block(Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0));
         let scene = SceneBuilder::new().soup(&ground).soup(&cube).build();
-        let open = open_of(&scene);
-        for (position, &open) in scene.meshes[1].positions.iter().zip(&open[1]) {
+        let found = visibility_of(&scene);
+        for (position, &visibility) in scene.meshes[1].positions.iter().zip(&found[1]) {
             // No normals: a vertex is the mean of its faces, an upper one of a lid and of two or four walls.
             let expected = if position.y > 1.0 { 0.55..0.85 } else { 0.45..0.53 };
-            assert!(expected.contains(&open), "{open} at {position}");
+            assert!(expected.contains(&visibility), "{visibility} at {position}");
         }
     }
 }

@@ -94,7 +94,7 @@ impl PageBaker<'_> {
         })
         .ok_or(BakeError::Cancelled)?;
         let account = &mut self.sky_account;
-        account.unsettled_texels += runs.iter().map(|run| run.unsettled).sum::<u64>();
+        account.unsettled_texels += runs.iter().map(|run| run.unconverged).sum::<u64>();
         account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
         account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
         let mut baked = AmbientPage::new(size, samples, order, &runs, sky.engine.settings());
@@ -103,9 +103,9 @@ impl PageBaker<'_> {
         let seams = Seams::find(scene, geometry, sky.normals, atlas, page as u32, samples);
         check_cancelled(progress)?;
         for side in baked.sides_mut() {
-            self.sky_account.seams.push(seams.heal(&mut side.open, [0.0, 1.0]));
+            self.sky_account.seams.push(seams.stitch(&mut side.visibility, [0.0, 1.0]));
             for plane in side.bent.iter_mut().chain(&mut side.sky) {
-                seams.heal(plane, [-1.0, 1.0]);
+                seams.stitch(plane, [-1.0, 1.0]);
             }
         }
         Ok(baked)

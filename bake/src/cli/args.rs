@@ -39,7 +39,7 @@ pub enum Command {
     /// Turns every setting that trades time or bytes for error (presets, page sizes, lanes, engines, bits, layers, rays of
     /// sky) and writes a folder: report.html (tables, plots, and what to choose in words) and report.json (the same for
     /// programs). Errors are minutes of sun told wrongly, mean, 99th percentile and worst, against the exact answer at points
-    /// of the surfaces; of ambient occlusion, differences of openness. What did not fit the budget is said. For times that
+    /// of the surfaces; of ambient occlusion, differences of ambient visibility. What did not fit the budget is said. For times that
     /// mean something, let nothing else run meanwhile.
     ///
     /// Exit codes are those of `bake`.

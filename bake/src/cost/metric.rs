@@ -1,8 +1,8 @@
 //! How wrong an answer is: of lists of times, and of soft visibility through the day.
 
 use super::report::ErrorEntry;
-use crate::statistics::{self, percentile};
 use crate::maps::Lane;
+use crate::statistics::{self, percentile};
 use crate::sun::SunPath;
 use crate::visibility::Intervals;
 

@@ -179,10 +179,10 @@ fn read_ambient(folder: &Path, atlas: &AtlasEntry, size: (u32, u32)) -> Result<O
     let sky = |names: Option<&[String; 3]>| names.map(|names| read_sky(folder, names, size)).transpose();
     let of_front = atlas.sky.as_ref().map(|sky| &sky.front);
     let of_back = atlas.sky.as_ref().and_then(|sky| sky.back.as_ref());
-    let front = AmbientSide { open: front.unwrap_or_default(), bent: bent(&atlas.bent)?, sky: sky(of_front)? };
+    let front = AmbientSide { visibility: front.unwrap_or_default(), bent: bent(&atlas.bent)?, sky: sky(of_front)? };
     let back = match back {
         None => None,
-        Some(open) => Some(AmbientSide { open, bent: bent(&atlas.bent_back)?, sky: sky(of_back)? }),
+        Some(visibility) => Some(AmbientSide { visibility, bent: bent(&atlas.bent_back)?, sky: sky(of_back)? }),
     };
     let lacks = |is_there: fn(&AmbientSide) -> bool| back.as_ref().is_some_and(|b| is_there(b) != is_there(&front));
     if lacks(|side| side.bent.is_some()) || lacks(|side| side.sky.is_some()) {

@@ -5,7 +5,7 @@ use super::manifest::AtlasEntry;
 use super::page::BakedPage;
 use super::png_file::write_png;
 use super::write::{SetWriter, WriteError};
-use crate::ambient::{AmbientPage, Side};
+use crate::ambient::{AmbientPage, AmbientPlanes};
 use crate::maps::{AmbientMaps, AmbientSide, Bits, in_8_bits};
 use std::io::{Result, Seek, Write};
 
@@ -52,10 +52,11 @@ fn write_occlusion(
     file: impl Write,
 ) -> Result<()> {
     let (color, codes): (_, Vec<u16>) = match back {
-        None => (png::ColorType::Grayscale, front.open.clone()),
-        Some(back) => {
-            (png::ColorType::Rgb, front.open.iter().zip(&back.open).flat_map(|(&f, &b)| [f.max(b), f, b]).collect())
-        }
+        None => (png::ColorType::Grayscale, front.visibility.clone()),
+        Some(back) => (
+            png::ColorType::Rgb,
+            front.visibility.iter().zip(&back.visibility).flat_map(|(&f, &b)| [f.max(b), f, b]).collect(),
+        ),
     };
     write_codes(&codes, color, size, bits, file)
 }
@@ -77,9 +78,9 @@ fn write_codes(codes: &[u16], color: png::ColorType, size: (u32, u32), bits: Bit
 fn write_numbers(page: &AmbientPage, file: impl Write + Seek) -> Result<()> {
     let mut channels = Vec::new();
     for (prefix, side) in std::iter::once(("", &page.front)).chain(page.back.as_ref().map(|back| ("back.", back))) {
-        let Side { open, bent, sky } = side;
+        let AmbientPlanes { visibility, bent, sky } = side;
         let mut add = |name: String, plane: &[f32]| channels.push((name, plane.to_vec()));
-        add(format!("{prefix}ao"), open);
+        add(format!("{prefix}ao"), visibility);
         bent.iter().zip(["x", "y", "z"]).for_each(|(plane, axis)| add(format!("{prefix}bent.{axis}"), plane));
         sky.iter().enumerate().for_each(|(k, plane)| add(format!("{prefix}sky.{k}"), plane));
     }

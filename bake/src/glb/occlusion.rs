@@ -21,10 +21,10 @@ pub struct OcclusionPage {
 impl OcclusionPage {
     /// Encodes a page's ambient visibility.
     pub fn new(size: PageSize, maps: &AmbientMaps) -> Self {
-        let front = &maps.front.open;
+        let front = &maps.front.visibility;
         let grey: Vec<u8> = match &maps.back {
             None => front.iter().map(|&code| in_8_bits(code)).collect(),
-            Some(back) => front.iter().zip(&back.open).map(|(&f, &b)| in_8_bits(f.max(b))).collect(),
+            Some(back) => front.iter().zip(&back.visibility).map(|(&f, &b)| in_8_bits(f.max(b))).collect(),
         };
         let mut png = Vec::new();
         let mut encoder = png::Encoder::new(&mut png, size.width, size.height);

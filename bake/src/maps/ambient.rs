@@ -1,24 +1,24 @@
 //! Ambient light as it is stored.
 //!
-//! Openness is a code of 16 bits, 0 closed and 65535 open. Numbers between -1 and 1 (bent normals, sky coefficients) are codes
-//! with zero in the middle: q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
+//! Ambient visibility is a code of 16 bits: 0 is 0, 65535 is 1. Numbers between -1 and 1 (bent normals, sky coefficients) have
+//! zero in the middle: a code q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
 
 use super::Bits;
 
 /// Ambient light of a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AmbientMaps {
-    /// What fronts see.
+    /// Of fronts.
     pub front: AmbientSide,
-    /// What backs see, where some texel of the page has two sides; single-sided texels hold their front's.
+    /// Of backs, where some texel of the page has two sides; single-sided texels hold their front's.
     pub back: Option<AmbientSide>,
 }
 
 /// Ambient light of one side of a page's surfaces: row order, one entry a texel.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct AmbientSide {
-    /// Openness.
-    pub open: Vec<u16>,
+    /// Codes of ambient visibility.
+    pub visibility: Vec<u16>,
     /// Bent normals, world space, if the set has them.
     pub bent: Option<Vec<[u16; 3]>>,
     /// Sky visibility in spherical harmonics ([`crate::ambient::harmonics`]), if the set has it.
@@ -31,7 +31,7 @@ impl AmbientMaps {
         if bits == Bits::Eight {
             let sides = std::iter::once(&mut self.front).chain(&mut self.back);
             sides
-                .flat_map(|side| &mut side.open)
+                .flat_map(|side| &mut side.visibility)
                 .for_each(|code| *code = u16::from(in_8_bits(*code)) * CODES_OF_8_BITS);
         }
         self
@@ -41,13 +41,13 @@ impl AmbientMaps {
 /// Codes of 16 bits in one of 8.
 const CODES_OF_8_BITS: u16 = 257;
 
-/// The code of an openness.
-pub fn encode_open(open: f32) -> u16 {
-    (open.clamp(0.0, 1.0) * 65_535.0).round() as u16
+/// The code of a number between 0 and 1.
+pub fn encode_share(share: f32) -> u16 {
+    (share.clamp(0.0, 1.0) * 65_535.0).round() as u16
 }
 
-/// The openness that a code means.
-pub fn decode_open(code: u16) -> f32 {
+/// The number between 0 and 1 that a code means.
+pub fn decode_share(code: u16) -> f32 {
     f32::from(code) / 65_535.0
 }
 
@@ -75,10 +75,10 @@ mod tests {
         for i in -1000..=1000 {
             let x = i as f32 / 1000.0;
             assert!((decode_signed(encode_signed(x)) - x).abs() <= 0.5 / 32_767.0 + 1e-7);
-            assert!((decode_open(encode_open(x.abs())) - x.abs()).abs() <= 0.5 / 65_535.0 + 1e-7);
+            assert!((decode_share(encode_share(x.abs())) - x.abs()).abs() <= 0.5 / 65_535.0 + 1e-7);
         }
         assert_eq!([-1.0, 0.0, 1.0].map(|x| decode_signed(encode_signed(x))), [-1.0, 0.0, 1.0]);
-        assert_eq!([f32::NAN, 2.0].map(encode_open), [0, 65_535]);
+        assert_eq!([f32::NAN, 2.0].map(encode_share), [0, 65_535]);
     }
 
     #[test]
@@ -88,9 +88,11 @@ mod tests {
 
     #[test]
     fn rounding_to_8_bits_twice_is_rounding_once() {
-        let all = AmbientSide { open: (0..=u16::MAX).collect(), ..AmbientSide::default() };
+        let all = AmbientSide { visibility: (0..=u16::MAX).collect(), ..AmbientSide::default() };
         let once = AmbientMaps { front: all, back: None }.rounded_to(Bits::Eight);
-        assert!((0..=u16::MAX).zip(&once.front.open).all(|(code, &rounded)| in_8_bits(code) == in_8_bits(rounded)));
+        assert!(
+            (0..=u16::MAX).zip(&once.front.visibility).all(|(code, &rounded)| in_8_bits(code) == in_8_bits(rounded))
+        );
         assert_eq!(once.clone().rounded_to(Bits::Eight), once);
     }
 }

@@ -13,7 +13,7 @@ mod lanes;
 mod requantise;
 
 pub(crate) use ambient::in_8_bits;
-pub use ambient::{AmbientMaps, AmbientSide, decode_open, decode_signed, encode_open, encode_signed};
+pub use ambient::{AmbientMaps, AmbientSide, decode_share, decode_signed, encode_share, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
 pub use evaluate::{hard_visibility, soft_visibility};

@@ -37,7 +37,7 @@ pub enum Effect {
     /// Minutes that storing lost, texel by texel.
     LossMap,
     /// Alpha-masked surfaces: rays look up alpha.
-    AlphaCut,
+    AlphaMask,
     /// Surfaces that are lit from both sides.
     DoubleSided,
     /// Share of the sky that texels see.
@@ -65,7 +65,7 @@ impl Effect {
             Self::SeveralLayers => "several-layers",
             Self::SixteenBitTimes => "16-bit-times",
             Self::LossMap => "loss-map",
-            Self::AlphaCut => "alpha-cut",
+            Self::AlphaMask => "alpha-cut",
             Self::DoubleSided => "double-sided",
             Self::AmbientOcclusion => "ambient-occlusion",
             Self::AmbientDistance => "ambient-distance",

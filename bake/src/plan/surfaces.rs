@@ -6,8 +6,10 @@ use crate::scene::{Alpha, Material, Scene};
 /// What the scene's materials call for.
 pub(super) fn decisions(scene: &Scene) -> [Decision; 2] {
     [
-        of_surfaces(scene, Effect::AlphaCut, |material| matches!(material.alpha, Alpha::Cut { .. })),
-        of_surfaces(scene, Effect::DoubleSided, |material| material.is_double_sided && material.alpha != Alpha::Air),
+        of_surfaces(scene, Effect::AlphaMask, |material| matches!(material.alpha, Alpha::Mask { .. })),
+        of_surfaces(scene, Effect::DoubleSided, |material| {
+            material.is_double_sided && material.alpha != Alpha::Invisible
+        }),
     ]
 }
 

@@ -33,14 +33,16 @@ fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Layers { has_times: false, .. } | Facts::Depth { half_step_s: None, .. } => "no times are stored".into(),
         Facts::Layers { cap, needed: Some(needed), .. } => why_layers(cap, needed),
         Facts::Layers { cap: 1, .. } => "--layers 1: what is beyond four intervals is merged".into(),
-        Facts::Layers { cap, .. } => format!("as many layers of four intervals as texels need, {cap} at most (--layers)"),
+        Facts::Layers { cap, .. } => {
+            format!("as many layers of four intervals as texels need, {cap} at most (--layers)")
+        }
         Facts::Depth { bits, half_step_s: Some(s) } => {
             format!("--bits {}, given or by preset: edges are stored to {s:.2} s", bits.count())
         }
         Facts::Losses { is_asked: false, .. } => "not asked for".into(),
         Facts::Losses { has_times: true, .. } => "--loss-map asks for it".into(),
         Facts::Losses { .. } => "no times are stored, and none can be lost".into(),
-        Facts::Surfaces { surfaces, .. } if effect == Effect::AlphaCut => {
+        Facts::Surfaces { surfaces, .. } if effect == Effect::AlphaMask => {
             format!("{surfaces} drawn surfaces have an alpha mask")
         }
         Facts::Surfaces { surfaces, .. } => format!("{surfaces} drawn surfaces are double-sided"),
@@ -99,7 +101,9 @@ fn why_ambient(effect: Effect, request: &AmbientRequest) -> String {
 /// Of a bake with ambient light.
 fn why_no_ambient(effect: Effect) -> &'static str {
     match effect {
-        Effect::AmbientDistance => "everything occludes, however far; --ao-distance sets a limit, which closed rooms need",
+        Effect::AmbientDistance => {
+            "everything occludes, however far; --ao-distance sets a limit, which closed rooms need"
+        }
         Effect::BentNormals => "not asked for; --bent bakes them",
         Effect::SkyHarmonics => "not asked for; --sky sh2 bakes them",
         Effect::VertexAmbient => {
@@ -132,10 +136,10 @@ fn cost(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Losses { .. } => {
             "a PNG of 4 and an OpenEXR of 8 bytes a texel of each page; 24 bytes of memory a texel meanwhile".into()
         }
-        Facts::Surfaces { triangles: 0, .. } if effect == Effect::AlphaCut => {
+        Facts::Surfaces { triangles: 0, .. } if effect == Effect::AlphaMask => {
             "alpha looked up wherever a triangle with an alpha mask is met".into()
         }
-        Facts::Surfaces { triangles, .. } if effect == Effect::AlphaCut => {
+        Facts::Surfaces { triangles, .. } if effect == Effect::AlphaMask => {
             format!("alpha looked up wherever one of {triangles} triangles with an alpha mask is met")
         }
         Facts::Surfaces { triangles, .. } => format!(
@@ -224,8 +228,8 @@ fn toggled_by(effect: Effect, is_on: bool, facts: Facts) -> String {
 
 fn surface_toggle(effect: Effect, surfaces: usize) -> &'static str {
     match (effect, surfaces) {
-        (Effect::AlphaCut, 0) => "a material with alphaMode MASK or BLEND",
-        (Effect::AlphaCut, _) => "--leave-out MATERIAL, or alphaMode OPAQUE",
+        (Effect::AlphaMask, 0) => "a material with alphaMode MASK or BLEND",
+        (Effect::AlphaMask, _) => "--leave-out MATERIAL, or alphaMode OPAQUE",
         (_, 0) => "a material with \"doubleSided\": true",
         _ => "--leave-out MATERIAL, or \"doubleSided\": false",
     }

@@ -126,7 +126,7 @@ fn each_kind_of_map_adds_its_own_resources() {
     assert_eq!(lamp_layers, 1);
     let adds = Census { time_textures: 2, lamp_bindings: 1, bindings: 3, map_bytes: of_texels(16), ..nothing };
     holds(&lamp, &["lamp"], adds);
-    let open = AmbientSide { open: vec![40_000; texels(&stage)], ..AmbientSide::default() };
+    let open = AmbientSide { visibility: vec![40_000; texels(&stage)], ..AmbientSide::default() };
     let bent = AmbientSide { bent: Some(vec![[40_000; 3]; texels(&stage)]), ..open.clone() };
     let sky = AmbientSide { sky: Some(vec![[40_000; 9]; texels(&stage)]), ..bent.clone() };
     let with = |front: &AmbientSide, back: Option<AmbientSide>| {

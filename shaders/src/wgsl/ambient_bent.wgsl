@@ -20,5 +20,5 @@ fn bent_height(page_uv: vec2<f32>, side: i32) -> f32 {
 
 fn ambient_light(page_uv: vec2<f32>, normal: vec3<f32>, side: i32) -> vec3<f32> {
     let share = clamp(0.5 + 0.75 * bent_height(page_uv, side), 0.0, 1.0);
-    return mix(frame.ground_light, frame.sky_light, share) * openness(page_uv, side);
+    return mix(frame.ground_light, frame.sky_light, share) * ambient_visibility(page_uv, side);
 }

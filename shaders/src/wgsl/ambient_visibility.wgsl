@@ -5,7 +5,7 @@ fn ambient_visibility_at(texel: vec2<i32>, side: i32) -> f32 {
     return f32(textureLoad(ao_map, texel, side, 0).x) / 65535.0;
 }
 
-fn openness(page_uv: vec2<f32>, side: i32) -> f32 {
+fn ambient_visibility(page_uv: vec2<f32>, side: i32) -> f32 {
     let last = vec2<i32>(textureDimensions(ao_map)) - 1;
     let place = page_uv * vec2<f32>(last + 1) - 0.5;
     let base = floor(place);

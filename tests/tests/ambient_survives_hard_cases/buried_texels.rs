@@ -55,9 +55,9 @@ fn b10_on_edges_and_between_boxes() {
         .collect();
     let (found, _) = ambient_at(&traced, &points, rays(256));
     for (point, estimate) in points.iter().zip(found) {
-        assert!(estimate.open.is_finite() && estimate.bent.is_finite());
+        assert!(estimate.visibility.is_finite() && estimate.bent.is_finite());
         let is_between = (point.surface.position_m.x + traced.scene.centre_m.x - 1.0).abs() < 1e-6
             && point.surface.normal.x.abs() > 0.9;
-        assert_eq!(estimate.open, if is_between { 0.0 } else { 1.0 }, "{point:?}");
+        assert_eq!(estimate.visibility, if is_between { 0.0 } else { 1.0 }, "{point:?}");
     }
 }

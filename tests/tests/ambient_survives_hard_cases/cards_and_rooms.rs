@@ -84,5 +84,5 @@ fn a_windowless_room_is_black_and_with_a_distance_only_its_corners_are_dark() {
             assert!(ao(texel) < 0.75, "{} in the corner at {x}, {z}", ao(texel));
         }
     }
-    assert!(front(&set).open.contains(&65_535));
+    assert!(front(&set).visibility.contains(&65_535));
 }

@@ -56,7 +56,7 @@ fn no_seam_shows_where_charts_meet() {
     let (set, _) = baked(&scene, &settings, folder.path());
     let scene = sunbake::scene::load(&set.scene_file(), &sunbake::scene::LoadLimits::default()).unwrap();
     let page = &set.pages[0];
-    let open = &front(&set).open;
+    let open = &front(&set).visibility;
     let mut edges: HashMap<[[u32; 3]; 2], Vec<[Vec2; 2]>> = HashMap::new();
     for mesh in scene.meshes.iter().filter(|mesh| mesh.normals.is_some()) {
         let uvs = mesh.texcoords[1].as_ref().unwrap();

@@ -123,7 +123,7 @@ fn ambient_textures(
 ) -> Vec<(u32, wgpu::Texture)> {
     let sides: Vec<&AmbientSide> = std::iter::once(&ambient.front).chain(&ambient.back).collect();
     let open = || {
-        let slices: Vec<_> = sides.iter().map(|side| bytemuck::cast_slice(&side.open).to_vec()).collect();
+        let slices: Vec<_> = sides.iter().map(|side| bytemuck::cast_slice(&side.visibility).to_vec()).collect();
         (2, slices_texture(gpu, maps, "ambient occlusion", wgpu::TextureFormat::R16Uint, &slices))
     };
     let in_rgba =
