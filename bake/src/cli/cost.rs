@@ -64,7 +64,7 @@ fn text(args: &CostCommandArgs, report: &CostReport) -> String {
 fn line(row: &CostRow) -> String {
     let seconds = row.seconds.map_or(String::new(), |seconds| format!("{} s", plain(seconds, 3)));
     let sun = row.sun_min.map_or(String::new(), |error| format!("{} min of sun", plain(error.mean, 3)));
-    let open = row.open.map_or(String::new(), |error| format!("{} of ambient visibility", plain(error.mean, 3)));
+    let ambient = row.ambient.map_or(String::new(), |error| format!("{} of the sky", plain(error.mean, 3)));
     let note = row.note.as_deref().unwrap_or_default();
-    format!("  {:<18}{seconds:>10}  {sun:<20}{open:<20}{note}\n", row.name).trim_end().to_owned() + "\n"
+    format!("  {:<18}{seconds:>10}  {sun:<20}{ambient:<20}{note}\n", row.name).trim_end().to_owned() + "\n"
 }

@@ -1,37 +1,36 @@
-//! What the measurements say, in words. Every sentence is made of numbers that are in the report; what was not measured is
-//! said to be so, or not spoken of.
+//! Recommendations in sentences. Every number in them is in the report. What was not measured is either named as such or left out.
 
-use super::report::{CostReport, CostRow, ErrorEntry, How, Sweep};
+use super::report::{CostReport, CostRow, ErrorSummary, How, Sweep};
 use crate::report::{plain, with_unit};
 
-/// Below this change of error, as a share, a setting is said to change next to nothing.
-const NOTHING: f64 = 0.02;
+/// Relative change of error below which a setting is said to change next to nothing.
+const NEGLIGIBLE: f64 = 0.02;
 
-/// All that can be said.
-pub(super) fn words(report: &CostReport) -> Vec<String> {
-    let told = [
+/// All sentences that the measurements allow.
+pub(super) fn sentences(report: &CostReport) -> Vec<String> {
+    let sentences = [
         standard(report),
         presets(report),
         density(report),
         lanes(report),
-        blame(report),
+        error_sources(report),
         engines(report),
         sky(report),
     ];
-    told.into_iter().flatten().collect()
+    sentences.into_iter().flatten().collect()
 }
 
 /// What the standard preset gives.
 fn standard(report: &CostReport) -> Option<String> {
     let row = report.sweep("presets")?.measured("--preset standard")?;
     let error = row.sun_min.as_ref()?;
-    let open = row
-        .open
+    let ambient = row
+        .ambient
         .as_ref()
-        .map_or(String::new(), |open| format!("; ambient occlusion is within {} in the mean", plain(open.mean, 2)));
+        .map_or(String::new(), |error| format!("; ambient occlusion is within {} on average", plain(error.mean, 2)));
     let takes = if row.how == How::Baked { "It takes" } else { "It would take about" };
     Some(format!(
-        "`--preset standard` is within {} minutes of sun a point in the mean, 99 in 100 within {}{open}. {takes} {} here, and {} \
+        "`--preset standard` is within {} minutes of sun a point on average, 99 in 100 within {}{ambient}. {takes} {} here, and {} \
          on the GPU.",
         plain(error.mean, 2),
         plain(error.p99, 2),
@@ -40,20 +39,20 @@ fn standard(report: &CostReport) -> Option<String> {
     ))
 }
 
-/// What the presets beside it give, or why that is not known.
+/// What the other presets give, or why that is not known.
 fn presets(report: &CostReport) -> Option<String> {
     let sweep = report.sweep("presets")?;
     let from = sweep.measured("--preset standard")?;
-    let told = |name: &str| {
+    let sentence = |name: &str| {
         let row = sweep.rows.iter().find(|row| row.name == name)?;
         let why = || row.note.as_ref().map(|note| format!("`{name}` was {note}."));
         if row.is_measured() { against(sweep, name, from) } else { why() }
     };
-    let told: Vec<String> = ["--preset draft", "--preset final"].into_iter().filter_map(told).collect();
-    (!told.is_empty()).then(|| told.join(" "))
+    let sentences: Vec<String> = ["--preset draft", "--preset final"].into_iter().filter_map(sentence).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
-/// What more texels buy, and fewer save.
+/// What more texels gain, and fewer save.
 fn density(report: &CostReport) -> Option<String> {
     let sweep = report.sweep("sizes")?;
     let standard = report.sweep("presets")?.measured("--preset standard")?;
@@ -64,20 +63,21 @@ fn density(report: &CostReport) -> Option<String> {
     let finer = sweep.rows.get(place + 1).and_then(|row| against(sweep, &row.name, from));
     let coarser = place.checked_sub(1).and_then(|k| against(sweep, &sweep.rows[k].name, from));
     let knee = sweep.knee.as_ref().map(|name| format!("The knee of the curve lies at `{name}`."));
-    let told: Vec<String> = [finer, coarser, knee].into_iter().flatten().collect();
-    (!told.is_empty()).then(|| told.join(" "))
+    let sentences: Vec<String> = [finer, coarser, knee].into_iter().flatten().collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
-/// What lanes buy.
+/// What more lanes gain.
 fn lanes(report: &CostReport) -> Option<String> {
     let sweep = report.sweep("disc")?;
     let from = sweep.measured("--lanes 1")?;
-    let told: Vec<String> = ["--lanes 3", "--lanes 5"].iter().filter_map(|name| against(sweep, name, from)).collect();
-    (!told.is_empty()).then(|| told.join(" "))
+    let sentences: Vec<String> =
+        ["--lanes 3", "--lanes 5"].iter().filter_map(|name| against(sweep, name, from)).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
 /// Where the standard preset's error comes from.
-fn blame(report: &CostReport) -> Option<String> {
+fn error_sources(report: &CostReport) -> Option<String> {
     let all = report.sweep("presets")?.measured("--preset standard")?.sun_min?.mean;
     let of = |sweep: &str, name: &str| Some(report.sweep(sweep)?.measured(name)?.sun_min?.mean);
     let layers = of("layers", "--layers 4")?;
@@ -85,15 +85,15 @@ fn blame(report: &CostReport) -> Option<String> {
     let bits = of("bits", "--bits 16")?;
     let rest = match layers + lane {
         known if known < 0.5 * all => {
-            "most of it comes of texels that are wider than what they show, so more of them (`--size`, `--texels-per-metre`) help most"
+            "most of it comes from texels that are larger than the details they show, so more of them (`--size`, `--texels-per-metre`) help most"
         }
         _ if layers > lane && layers > 2.0 * bits => "more layers (`--layers`) help most",
         _ if layers > lane => "little is left to gain",
         _ => "more lanes (`--lanes`) help most",
     };
     Some(format!(
-        "`--preset standard` is off by {} minutes; of single texels, four layers of 16 bits are by {} (rounding alone by {}), and the sun \
-         taken for a line by {}, part of which filtering evens out: {rest}.",
+        "`--preset standard` is off by {} minutes; at single texels, four layers of 16 bits are off by {} (rounding alone by {}), and taking the sun \
+         as a line by {}, part of which filtering evens out: {rest}.",
         plain(all, 2),
         plain(layers, 2),
         plain(bits, 2),
@@ -110,7 +110,7 @@ fn engines(report: &CostReport) -> Option<String> {
     let alike = rays.min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let error = alike.sun_min.as_ref()?;
     Some(format!(
-        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel in the mean, by {} at worst.{}",
+        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel on average, by {} at worst.{}",
         with_unit(exact_s, "s"),
         alike.name,
         with_unit(alike.seconds?, "s"),
@@ -120,7 +120,7 @@ fn engines(report: &CostReport) -> Option<String> {
     ))
 }
 
-/// A bisection that is faster than the exact engine, if there is one: the best of them.
+/// The bisection with the least error among those that are faster than the exact engine, if there is one.
 fn cheap_bisection(sweep: &Sweep, exact_s: f64) -> Option<String> {
     let faster = |row: &&CostRow| row.curve == "bisect" && row.seconds.is_some_and(|seconds| seconds < 0.9 * exact_s);
     let mean = |row: &CostRow| row.sun_min.map_or(f64::INFINITY, |error| error.mean);
@@ -134,24 +134,24 @@ fn cheap_bisection(sweep: &Sweep, exact_s: f64) -> Option<String> {
     ))
 }
 
-/// What rays of sky buy.
+/// What more rays of sky gain.
 fn sky(report: &CostReport) -> Option<String> {
     let sweep = report.sweep("sky")?;
-    let told = |rays: u32| {
+    let sentence = |rays: u32| {
         let row = sweep.measured(&format!("--ao-rays {rays}"))?;
-        let error = row.open.as_ref()?;
+        let error = row.ambient.as_ref()?;
         Some(format!(
-            "{rays} rays err by {} (99 in 100 by less than {}) in {}",
+            "{rays} rays are off by {} (99 in 100 by less than {}) in {}",
             plain(error.mean, 2),
             plain(error.p99, 2),
             with_unit(row.seconds?, "s")
         ))
     };
-    let told: Vec<String> = [64, 128, 512].into_iter().filter_map(told).collect();
-    (!told.is_empty()).then(|| format!("Ambient occlusion, all texels of the page: {}.", told.join("; ")))
+    let sentences: Vec<String> = [64, 128, 512].into_iter().filter_map(sentence).collect();
+    (!sentences.is_empty()).then(|| format!("Ambient occlusion, all texels of the page: {}.", sentences.join("; ")))
 }
 
-/// A row against another of its sweep, if it was measured.
+/// A row compared with another of its sweep, if it was measured.
 fn against(sweep: &Sweep, name: &str, from: &CostRow) -> Option<String> {
     let row = sweep.measured(name)?;
     let times = row.seconds? / from.seconds?;
@@ -167,14 +167,14 @@ fn against(sweep: &Sweep, name: &str, from: &CostRow) -> Option<String> {
     ))
 }
 
-/// What an error becomes, in minutes.
-fn change(from: &ErrorEntry, to: &ErrorEntry) -> String {
+/// How an error changes, in minutes.
+fn change(from: &ErrorSummary, to: &ErrorSummary) -> String {
     let by = from.mean - to.mean;
     let mean = plain(to.mean, 2);
     match by {
-        _ if by.abs() < NOTHING * from.mean => format!("changes next to nothing ({mean} minutes)"),
-        _ if by > 0.0 => format!("buys {} minutes (down to {mean})", plain(by, 2)),
-        _ => format!("gives up {} minutes (up to {mean})", plain(-by, 2)),
+        _ if by.abs() < NEGLIGIBLE * from.mean => format!("changes next to nothing ({mean} minutes)"),
+        _ if by > 0.0 => format!("gains {} minutes (down to {mean})", plain(by, 2)),
+        _ => format!("loses {} minutes (up to {mean})", plain(-by, 2)),
     }
 }
 
@@ -191,20 +191,20 @@ fn percent(share: f64) -> String {
 mod tests {
     use super::*;
 
-    fn error(mean: f64) -> ErrorEntry {
-        ErrorEntry { mean, rms: mean, p99: 9.0, worst: 20.0 }
+    fn error(mean: f64) -> ErrorSummary {
+        ErrorSummary { mean, rms: mean, p99: 9.0, worst: 20.0 }
     }
 
     #[test]
-    fn what_changes_is_told_by_its_sign() {
-        assert_eq!(change(&error(0.5), &error(0.4)), "buys 0.10 minutes (down to 0.40)");
-        assert_eq!(change(&error(0.5), &error(0.75)), "gives up 0.25 minutes (up to 0.75)");
+    fn a_change_is_worded_by_its_sign() {
+        assert_eq!(change(&error(0.5), &error(0.4)), "gains 0.10 minutes (down to 0.40)");
+        assert_eq!(change(&error(0.5), &error(0.75)), "loses 0.25 minutes (up to 0.75)");
         assert_eq!(change(&error(0.5), &error(0.501)), "changes next to nothing (0.50 minutes)");
         assert_eq!([factor(3.92), factor(0.25)], ["3.9 times", "25 % of"]);
     }
 
     #[test]
-    fn what_was_not_run_is_not_spoken_of() {
+    fn what_was_not_run_is_not_mentioned() {
         let row = |name: &str, seconds: f64, mean: f64| CostRow {
             how: How::Baked,
             note: None,
@@ -218,10 +218,10 @@ mod tests {
         let sweep = Sweep { id: text(), title: text(), measured_on: text(), meaning: text(), knee: None, rows };
         let from = &sweep.rows[0];
         assert_eq!(against(&sweep, "c", from), None);
-        let told = against(&sweep, "b", from).unwrap();
+        let sentence = against(&sweep, "b", from).unwrap();
         assert_eq!(
-            told,
-            "`b` takes 2.0 times the time and 1.0 times the bytes of `a` and buys 0.50 minutes (down to 0.50)."
+            sentence,
+            "`b` takes 2.0 times the time and 1.0 times the bytes of `a` and gains 0.50 minutes (down to 0.50)."
         );
         assert_eq!(against(&sweep, "d", from), None);
     }

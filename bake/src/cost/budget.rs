@@ -4,11 +4,11 @@ use crate::progress::{BakeStage, Progress};
 use crate::report::with_unit;
 use std::time::Instant;
 
-/// How much longer than the budget a run that has begun may last, as a share of it.
+/// How far a started run may exceed the budget, as a share of it.
 const GRACE: f64 = 0.1;
 
-/// Time on the clock, and the ear that hears who wants to stop. As a [`Progress`], it passes on what it is told, and stops
-/// what outlasts the budget.
+/// The wall-clock time that is left. As a [`Progress`], it forwards everything to the caller's, and also cancels what exceeds the
+/// budget.
 pub(super) struct Budget<'a> {
     started: Instant,
     seconds: f64,
@@ -29,7 +29,7 @@ impl<'a> Budget<'a> {
         self.started.elapsed().as_secs_f64()
     }
 
-    /// Why a run that may take so many seconds is not begun, if it should not be.
+    /// Why a run that takes this many seconds is not started, if it does not fit.
     pub fn refusal(&self, predicted_s: f64) -> Option<String> {
         let left_s = (self.seconds - self.spent_s()).max(0.0);
         (predicted_s > left_s).then(|| {
@@ -71,7 +71,7 @@ mod tests {
     use crate::progress::Silent;
 
     #[test]
-    fn what_does_not_fit_is_refused_with_both_numbers() {
+    fn what_does_not_fit_is_refused_with_both_times() {
         let budget = Budget::new(100.0, &Silent);
         assert_eq!(budget.refusal(50.0), None);
         let words = budget.refusal(500.0).unwrap();

@@ -1,6 +1,6 @@
 //! The report as a page.
 
-use super::report::{CostReport, CostRow, ErrorEntry, How, ReferenceEntry, Sweep};
+use super::report::{CostReference, CostReport, CostRow, ErrorSummary, How, Sweep};
 use crate::report::plot::{self, Axis, Plot, Point, Series};
 use crate::report::{Cell, Column, Row, Table, escape, page, plain, whole, with_unit};
 
@@ -71,7 +71,7 @@ fn with_code(text: &str) -> String {
 }
 
 fn explanation(report: &CostReport) -> String {
-    let ReferenceEntry {
+    let CostReference {
         points,
         buried_points,
         lanes,
@@ -87,22 +87,23 @@ fn explanation(report: &CostReport) -> String {
         [points, buried_points, page_texels, measured_texels].map(whole);
     let [moments, point_rays, texel_rays] = [moments, point_rays, texel_rays].map(whole);
     format!(
-        "<p><b>Whole bakes</b> are what somebody sees: a set is baked for real, read from its files as a runtime reads it, and set \
-         against what is true at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do \
-         not count). True is the exact answer at the point itself, along {lanes} lanes across the sun's disc, compared at {moments} \
-         moments of the day; and the openness that {point_rays} rays find. Of a bake for which there was no time, those texels \
-         alone are baked that the points read; its error of sun is the same, its openness lacks what heals seams, and its time is a prediction.</p>\n\
-         <p><b>Knobs at texels</b> are turned one at a time on {measured_texels} of the {page_texels} texels of a page of {edge}, in \
-         runs of neighbours; seconds are scaled to all of them. Each is set against the same texel's own best answer (for the \
-         sky {texel_rays} rays), so that the error is the knob's alone, and texels too wide are no part of it.</p>\n\
-         <p><b>Minutes of sun</b>: for how much of the day the sun is told wrongly, where half of its disc counts half. \
-         Open circles and dots name themselves when pointed at; a ring marks the knee, the point farthest below the straight line between a curve's ends, both axes being \
+        "<p><b>Whole bakes</b>: a set is baked, read from its files as a runtime reads it, and compared with the exact answer \
+         at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do \
+         not count). The exact answer is that at the point itself, along {lanes} lanes across the sun's disc, compared at {moments} \
+         moments of the day; and for the sky, the ambient visibility by {point_rays} rays. Where there was no time for a bake, only the texels that \
+         the points read are baked (a sparse bake): its error of sun is the same, its ambient visibility is not stitched at seams, and its time is \
+         a prediction.</p>\n\
+         <p><b>Settings at texels</b> are varied one at a time on {measured_texels} of the {page_texels} texels of a page of {edge}, in \
+         runs of neighbours; seconds are scaled to all of them. Each is compared with the best answer for the same texel (for the \
+         sky {texel_rays} rays), so the error is that of the setting alone, without that of texels that are too large.</p>\n\
+         <p><b>Minutes of sun</b>: for how much of the day the sun is wrong, where half of its disc counts half. \
+         Point at a circle or a dot for its name; a ring marks the knee, the point farthest below the straight line between a curve's ends, both axes being \
          logarithmic. Where a small page cannot hold all charts there are several, so a smaller `--size` may come out as dense as a \
          larger one. Click a heading to sort.</p>\n"
     )
 }
 
-fn section(sweep: &Sweep, reference: &ReferenceEntry) -> String {
+fn section(sweep: &Sweep, reference: &CostReference) -> String {
     let measured_on = match sweep.measured_on.as_str() {
         "texels" => {
             format!("Measured on {} of {} texels.", whole(reference.measured_texels), whole(reference.page_texels))
@@ -121,20 +122,20 @@ fn section(sweep: &Sweep, reference: &ReferenceEntry) -> String {
 
 fn table(sweep: &Sweep) -> String {
     let has = |of: fn(&CostRow) -> bool| sweep.rows.iter().any(of);
-    let (has_sun, has_open) = (has(|row| row.sun_min.is_some()), has(|row| row.open.is_some()));
+    let (has_sun, has_ambient) = (has(|row| row.sun_min.is_some()), has(|row| row.ambient.is_some()));
     let (has_disk, has_texels) = (has(|row| row.disk_bytes.is_some()), has(|row| row.texels.is_some()));
     let mut columns = vec![
         Column::words("setting", "as on the command line"),
-        Column::numbers("time", "s", "by the clock; of knobs scaled to all texels of the page"),
+        Column::numbers("time", "s", "wall-clock; of settings at texels scaled to all texels of the page"),
     ];
     if has_disk {
         columns.push(Column::numbers("on disk", "MiB", "all files of the set"));
     }
-    columns.push(Column::numbers("on the GPU", "MiB", "as a runtime holds what was varied"));
+    columns.push(Column::numbers("on the GPU", "MiB", "what was varied, as a runtime holds it"));
     if has_texels {
         columns.push(Column::numbers("texels", "", "that stand for a point of a surface"));
     }
-    for (is_there, what, unit) in [(has_sun, "sun", "min"), (has_open, "sky", "openness")] {
+    for (is_there, what, unit) in [(has_sun, "sun", "min"), (has_ambient, "sky", "visibility")] {
         if is_there {
             columns.push(Column::numbers(&format!("{what}, mean"), unit, "mean error"));
             columns.push(Column::numbers("99 % under", unit, "99 in 100 are no worse"));
@@ -146,7 +147,7 @@ fn table(sweep: &Sweep) -> String {
         cells.extend(has_disk.then(|| mib(row.disk_bytes)));
         cells.push(mib(row.gpu_bytes));
         cells.extend(has_texels.then(|| row.texels.map_or(Cell::empty(), |n| Cell::number(&whole(n), n as f64))));
-        let errors = [(has_sun, row.sun_min), (has_open, row.open)];
+        let errors = [(has_sun, row.sun_min), (has_ambient, row.ambient)];
         cells.extend(errors.into_iter().filter(|(is_there, _)| *is_there).flat_map(|(_, error)| error_cells(error)));
         Row { is_marked: is_knee(row, sweep), is_muted: !row.is_measured(), ..Row::of(cells) }
     };
@@ -171,11 +172,11 @@ fn mib(bytes: Option<u64>) -> Cell {
     number(bytes.map(|bytes| bytes as f64 / f64::from(1 << 20)))
 }
 
-fn error_cells(error: Option<ErrorEntry>) -> [Cell; 3] {
+fn error_cells(error: Option<ErrorSummary>) -> [Cell; 3] {
     [error.map(|e| e.mean), error.map(|e| e.p99), error.map(|e| e.worst)].map(number)
 }
 
-/// Error against time, and where bytes are what is traded, against bytes.
+/// Error against time, and against bytes where the setting changes them.
 fn figures(sweep: &Sweep) -> String {
     let is_of_bytes = matches!(sweep.id.as_str(), "bits" | "layers");
     let seconds: Figure = (Axis::log("seconds"), |row| row.seconds);
@@ -189,7 +190,7 @@ fn figures(sweep: &Sweep) -> String {
     if drawn.is_empty() { drawn } else { format!("<div class=\"side-by-side\">{drawn}</div>\n") }
 }
 
-/// An axis, and what of a row lies along it.
+/// An axis, and a row's value along it.
 type Figure = (Axis, fn(&CostRow) -> Option<f64>);
 
 fn drawn(sweep: &Sweep, (x, of): Figure) -> Option<String> {
@@ -214,7 +215,7 @@ fn drawn(sweep: &Sweep, (x, of): Figure) -> Option<String> {
     let y = Axis::log(if sweep.rows.iter().any(|row| row.sun_min.is_some()) {
         "minutes of sun wrong, mean"
     } else {
-        "openness wrong, mean"
+        "error of ambient visibility, mean"
     });
     let title = format!("{}: error against {}", sweep.title, if is_of_time { "time" } else { "bytes" });
     Some(format!("<figure>{}</figure>", plot::scatter(&Plot { title, x, y, series, mark })))

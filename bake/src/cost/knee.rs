@@ -1,17 +1,17 @@
-//! The knee of a curve of error against time: where more time begins to buy little.
+//! The knee of a curve of error against time: beyond it, more time gains little.
 //!
 //! Based on: Satopaa, Albrecht, Irwin and Raghavan, "Finding a 'Kneedle' in a Haystack: Detecting Knee Points in System
 //! Behavior", *ICDCS Workshops*, 2011. The curve is scaled to the unit square, and its knee lies where it is farthest from the
 //! chord between its ends. Departures: both numbers are taken as logarithms, since times and errors differ by factors, and
-//! error falls by powers; there is no smoothing, since there are a dozen points and each is a measurement; only what no other
-//! point beats in time and error at once is on the curve; and a curve that is nearly its chord has no knee.
+//! error falls by powers; there is no smoothing, since there are a dozen points and each is a measurement; only
+//! points that no other beats in both time and error are on the curve; and a curve that is nearly straight has no knee.
 
 /// How far from the chord, in the unit square, a knee must be.
 const LEAST_BEND: f64 = 0.05;
-/// By what factor errors must differ along a curve that has one: where time buys nothing there is nothing to stop at.
+/// Least ratio of the largest to the smallest error: a curve that is flatter has no knee.
 const LEAST_RATIO: f64 = 1.25;
 
-/// Index of the knee of (time, error) pairs, if there is one. What is not positive has no logarithm and is passed over.
+/// Index of the knee of (time, error) pairs, if there is one. Pairs that are not positive have no logarithm and are skipped.
 pub(super) fn knee(points: &[(f64, f64)]) -> Option<usize> {
     let curve = frontier(points);
     let &[(first, x0, y0), .., (_, x1, y1)] = curve.as_slice() else { return None };
@@ -27,7 +27,7 @@ pub(super) fn knee(points: &[(f64, f64)]) -> Option<usize> {
     (bend > LEAST_BEND).then_some(index)
 }
 
-/// Points that no other beats, in logarithms, by time; each with its index.
+/// The logarithms of points that no other beats, by time; each with its index.
 fn frontier(points: &[(f64, f64)]) -> Vec<(usize, f64, f64)> {
     let is_placed = |(_, (time, error)): &(usize, &(f64, f64))| {
         *time > 0.0 && *error > 0.0 && time.is_finite() && error.is_finite()
@@ -53,7 +53,7 @@ mod tests {
         // Two power laws that meet at the third point.
         let curve = [(1.0, 1000.0), (2.0, 100.0), (4.0, 10.0), (40.0, 8.0), (400.0, 6.4)];
         assert_eq!(knee(&curve), Some(2));
-        // In any order, and with what is beaten or has no logarithm among it.
+        // In any order, with dominated points and points without a logarithm among them.
         let more = [
             (400.0, 6.4),
             (5.0, 50.0),

@@ -1,18 +1,18 @@
-//! How wrong an answer is: of lists of times, and of soft visibility through the day.
+//! Errors of interval lists and of soft visibility through the day, as path time or as visibility.
 
-use super::report::ErrorEntry;
+use super::report::ErrorSummary;
 use crate::maps::Lane;
 use crate::statistics::{self, percentile};
 use crate::sun::SunPath;
 use crate::visibility::Intervals;
 
-/// Path time that just one of two lists calls lit.
+/// Path time during which exactly one of two lists is lit.
 pub(super) fn symmetric_difference_t(a: &Intervals, b: &Intervals) -> f64 {
-    (a.lit_length() + b.lit_length() - 2.0 * common_t(a.as_slice(), b.as_slice())).max(0.0)
+    (a.lit_length() + b.lit_length() - 2.0 * overlap_t(a.as_slice(), b.as_slice())).max(0.0)
 }
 
-/// Path time that both call lit: one walk along both.
-fn common_t(mut a: &[[f64; 2]], mut b: &[[f64; 2]]) -> f64 {
+/// Path time during which both lists are lit: one walk along both.
+fn overlap_t(mut a: &[[f64; 2]], mut b: &[[f64; 2]]) -> f64 {
     let mut common = 0.0;
     while let (Some(first), Some(second)) = (a.first(), b.first()) {
         common += (first[1].min(second[1]) - first[0].max(second[0])).max(0.0);
@@ -25,7 +25,7 @@ fn common_t(mut a: &[[f64; 2]], mut b: &[[f64; 2]]) -> f64 {
     common
 }
 
-/// Share of a lane that is lit at `t`: twin of [`crate::maps::soft_visibility`], on times that were never stored.
+/// Share of a lane that is lit at `t`: the twin of [`crate::maps::soft_visibility`], on times that were never stored.
 pub(super) fn soft(lit: &Intervals, t: f64, width_t: f64) -> f64 {
     if width_t <= 0.0 {
         return f64::from(u8::from(lit.contains(t)));
@@ -39,13 +39,14 @@ pub(super) fn soft(lit: &Intervals, t: f64, width_t: f64) -> f64 {
 /// moments are less than one apart.
 pub(super) const MOMENTS: usize = 1024;
 
-/// The moments of a point, whose start is a number of its own in [0, 1): so no error hides between moments everywhere.
+/// The moments of a point as path times. Each point has its own `start` in [0, 1), so that no error falls between the moments of
+/// all points.
 pub(super) fn moments(start: f64) -> impl Iterator<Item = f64> {
     (0..MOMENTS).map(move |k| (k as f64 + start) / MOMENTS as f64)
 }
 
-/// Share of the disc that is seen at each moment, from what each lane sees.
-pub(super) fn of_disc(answers: &[Intervals], lanes: &[Lane], path: &SunPath, start: f64) -> Vec<f32> {
+/// Visible share of the disc at each moment, from the lit intervals of each lane.
+pub(super) fn disc_visibility(answers: &[Intervals], lanes: &[Lane], path: &SunPath, start: f64) -> Vec<f32> {
     let chords: Vec<f64> = lanes.iter().map(|lane| lane.chord(path.angular_radius_rad)).collect();
     let at = |t: f64| {
         let width_t = path.width_t(t);
@@ -55,18 +56,18 @@ pub(super) fn of_disc(answers: &[Intervals], lanes: &[Lane], path: &SunPath, sta
     moments(start).map(at).collect()
 }
 
-/// Path time that one of two is wrong by, if the other is right: the mean of their differences at the moments.
-pub(super) fn apart_t(a: &[f32], b: &[f32]) -> f64 {
+/// Path time by which one visibility differs from the other: the mean difference over the moments.
+pub(super) fn mean_difference_t(a: &[f32], b: &[f32]) -> f64 {
     statistics::mean(a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())))
 }
 
-/// Mean, percentile and worst; none of nothing.
-pub(super) fn distribution(mut errors: Vec<f64>) -> Option<ErrorEntry> {
+/// Mean, root mean square, 99th percentile and largest of errors; none for an empty list.
+pub(super) fn summary(mut errors: Vec<f64>) -> Option<ErrorSummary> {
     let mean = statistics::mean(errors.iter().copied());
     let rms = statistics::mean(errors.iter().map(|error| error * error)).sqrt();
     let p99 = percentile(&mut errors, 99, f64::total_cmp)?;
     let worst = errors.into_iter().max_by(f64::total_cmp)?;
-    Some(ErrorEntry { mean, rms, p99, worst })
+    Some(ErrorSummary { mean, rms, p99, worst })
 }
 
 #[cfg(test)]
@@ -105,7 +106,7 @@ mod tests {
         };
         for _ in 0..500 {
             let (a, b) = (random(), random());
-            assert!((common_t(a.as_slice(), b.as_slice()) - a.intersection(&b).lit_length()).abs() < 1e-12);
+            assert!((overlap_t(a.as_slice(), b.as_slice()) - a.intersection(&b).lit_length()).abs() < 1e-12);
         }
     }
 
@@ -120,10 +121,10 @@ mod tests {
     }
 
     #[test]
-    fn the_distribution_is_that_of_the_list() {
-        let found = distribution((1..=200).rev().map(f64::from).collect()).unwrap();
+    fn the_summary_is_that_of_the_list() {
+        let found = summary((1..=200).rev().map(f64::from).collect()).unwrap();
         assert_eq!((found.mean, found.p99, found.worst), (100.5, 198.0, 200.0));
         assert!((found.rms - (200.0f64 * 201.0 * 401.0 / 6.0 / 200.0).sqrt()).abs() < 1e-9);
-        assert_eq!(distribution(Vec::new()), None);
+        assert_eq!(summary(Vec::new()), None);
     }
 }

@@ -1,29 +1,29 @@
 //! What accuracy costs on a scene and a machine: every setting that trades time or bytes for error, measured.
 //!
-//! **Two kinds of measurement.** *Whole bakes* (presets, sizes of the page, lanes) are real calls of [`crate::bake`] into a
-//! folder that is removed again; their error is what somebody sees who stands at a point of a surface, set against what is
-//! true there (`truth.rs`, `played.rs`): texels, codes, layers, lanes, filter and all. *Knobs* (engines, bits, layers, lanes,
-//! rays of sky) are turned one at a time on a sample of the page's texels, in runs of neighbours, since engines live off
-//! neighbours; their time is scaled to the whole page, and their error is set against the same texel's own best answer, so
-//! that it is the knob's and nothing else's (`knobs.rs`).
+//! **Two kinds of measurement.** *Whole bakes* (presets, page sizes, lanes) are real calls of [`crate::bake`] into a folder that is
+//! removed again. Their error is measured at points of surfaces against the exact answer there (`truth.rs`, `playback.rs`), and
+//! includes everything: texels, codes, layers, lanes, filter. *Sweeps at texels* (engines, bits, layers, lanes, rays of sky) change
+//! one setting at a time on a sample of the page's texels, in runs of neighbours, because engines are faster on neighbours. Their
+//! time is scaled to the whole page. Their error is measured against the best answer for the same texel, so it is that of the
+//! setting alone (`sweeps.rs`).
 //!
-//! **The error of sun** at a place is how many minutes of the day are told wrongly there, weighed by how much of the disc is:
-//! `duration * integral of |V - V_reference| dt`. Of hard times that is the symmetric difference of two lists. **The error of
-//! sky** is the difference of openness.
+//! **The error of the sun** at a point is the number of minutes of the day at which visibility is wrong, weighted by how much of the
+//! disc is wrong: `duration * integral of |V - V_reference| dt`. For hard times that is the symmetric difference of two lists. **The
+//! error of the sky** is the difference of ambient visibility.
 //!
-//! **The budget** is time on the clock. Runs are in the order of their use, each is predicted from those before, and one that
-//! would not fit is not begun; one that outlasts the budget by a tenth all the same is stopped. A bake too long to be made is
-//! sampled: only those texels are baked that the points read, which gives its error, and its time is predicted (`around.rs`).
-//! What was not run is said, with the prediction. So a small budget gives a short report, not a wrong one.
+//! **The budget** is wall-clock time. The most useful runs come first. Each is predicted from earlier ones, and one that would not
+//! fit is not started. One that exceeds the budget by more than a tenth is stopped. A bake that would take too long becomes a sparse
+//! bake: only the texels that the points read are baked, which gives its error, and its time is predicted (`sparse_bake.rs`). The
+//! report lists what was not run, with the prediction. So a small budget gives a short report, not a wrong one.
 //!
-//! Read on: `jobs.rs` (what is run, and in which order), `workload.rs` (the scene), `difference.rs` (errors), `knee.rs`,
-//! `advice.rs` (words), `html.rs` (the page), `report.rs` (the file).
+//! Read on: `schedule.rs` (what is run, and in which order), `workload.rs` (the scene), `metric.rs` (errors), `knee.rs`,
+//! `advice.rs` (recommendations), `html.rs` (the page), `report.rs` (the file).
 
 mod advice;
 mod budget;
+mod cpu_share;
 mod html;
 mod knee;
-mod load;
 mod metric;
 mod playback;
 pub mod report;
@@ -46,20 +46,20 @@ use crate::report::folder::FolderError;
 use crate::scene::LoadError;
 use crate::settings::{BakeSettings, SunRequest};
 use budget::Budget;
-use report::{SceneEntry, SunEntry};
+use report::{MeasuredScene, MeasuredSun};
 use std::path::Path;
 use workload::Workload;
 
-/// What is to be measured, and how long that may take.
+/// What to measure, and how long that may take.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostSettings {
     /// Which sun.
     pub sun: SunRequest,
     /// Names of materials that are left out, see [`BakeSettings::leave_out`].
     pub leave_out: Vec<String>,
-    /// Edge of the page on which knobs are turned, 64 to 16384, usually that of the standard preset.
+    /// Edge of the page whose texels the sweeps sample, 64 to 16384, usually that of the standard preset.
     pub page_size_texels: u32,
-    /// Seconds that all of it may take, 10 to 86400, usually 600. More seconds, more runs.
+    /// Seconds that all measurements may take, 10 to 86400, usually 600. With more seconds, more is run.
     pub budget_s: f64,
     /// Threads, 0 for one a core.
     pub threads: usize,
@@ -70,7 +70,7 @@ pub struct CostSettings {
 /// Why costs were not measured. Nothing was left behind.
 #[derive(Debug, thiserror::Error)]
 pub enum CostError {
-    /// The scene, the sun or the layout is not to be had.
+    /// The scene cannot be read or baked.
     #[error(transparent)]
     Bake(#[from] BakeError),
     /// A set that was just written cannot be read.
@@ -82,7 +82,7 @@ pub enum CostError {
     /// The report cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),
-    /// There is no sun to measure by.
+    /// There is no sun to measure with.
     #[error("{0}, and costs are measured by the sun")]
     NoSun(String),
     /// There is nothing to measure.
@@ -93,7 +93,7 @@ pub enum CostError {
     Moved {
         /// Its index.
         triangle: u32,
-        /// How far it moved.
+        /// Distance that it moved.
         apart_m: f64,
     },
 }
@@ -120,14 +120,14 @@ pub fn cost(
 ) -> Result<CostReport, CostError> {
     let budget = Budget::new(settings.budget_s, progress);
     let workload = Workload::new(scene_file, settings, &budget)?;
-    let mut jobs = schedule::Jobs::new(&workload, settings, work_folder, &budget)?;
-    jobs.run_all()?;
-    let (sweeps, reference) = jobs.finish();
+    let mut schedule = schedule::Schedule::new(&workload, settings, work_folder, &budget)?;
+    schedule.run_all()?;
+    let (sweeps, reference) = schedule.finish();
     let mut report = CostReport {
         format: report::FORMAT.into(),
         version: report::VERSION,
         generator: concat!("sunbake ", env!("CARGO_PKG_VERSION")).into(),
-        scene: SceneEntry {
+        scene: MeasuredScene {
             file: workload.scene().source.file_name.clone(),
             sha256: workload.scene().source.sha256.clone(),
             triangles: workload.scene().triangle_count() as u64,
@@ -142,17 +142,17 @@ pub fn cost(
         advice: Vec::new(),
         warnings: workload.warnings().iter().map(ToString::to_string).collect(),
     };
-    report.warnings.extend(crowded(&report));
-    report.advice = advice::words(&report);
+    report.warnings.extend(busy_machine(&report));
+    report.advice = advice::sentences(&report);
     Ok(report)
 }
 
 /// Share of the cores' time below which something else must have run.
-const CROWDED: f64 = 0.85;
+const BUSY_MACHINE: f64 = 0.85;
 
-/// A word where the machine was not ours alone.
-fn crowded(report: &CostReport) -> Option<String> {
-    let share = report.cores_share.filter(|share| *share < CROWDED)?;
+/// A warning where other processes used the machine.
+fn busy_machine(report: &CostReport) -> Option<String> {
+    let share = report.cores_share.filter(|share| *share < BUSY_MACHINE)?;
     Some(format!(
         "this process got {:.0} % of the time of its threads, so something else ran: seconds are longer than on an idle machine, \
          and compare with one another only roughly",
@@ -160,12 +160,12 @@ fn crowded(report: &CostReport) -> Option<String> {
     ))
 }
 
-fn sun_entry(workload: &Workload) -> SunEntry {
+fn sun_entry(workload: &Workload) -> MeasuredSun {
     let path = workload.path();
     let local = [0.0, 1.0].map(|t| path.local_text(t));
     let local = match local {
         [Some(start), Some(end)] => Some([start, end]),
         _ => None,
     };
-    SunEntry { local, duration_min: path.duration_min, angular_radius_deg: path.angular_radius_rad.to_degrees() }
+    MeasuredSun { local, duration_min: path.duration_min, angular_radius_deg: path.angular_radius_rad.to_degrees() }
 }

@@ -1,66 +1,67 @@
-//! What a set shows at points, read from its files as a runtime reads them: four texels evaluated, then blended, and no more
-//! than the share of the disc that stands before the surface's plane. The runtime's `playback.rs` is the twin.
+//! What a set shows at points of surfaces, evaluated as a runtime does: at four texels, then blended, and no more than the share of
+//! the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
 
 use super::CostError;
 use super::metric;
-use super::truth::{SurfaceSample, Truth};
+use super::truth::{GroundTruth, SurfaceSample};
 use crate::atlas::{Atlas, Footprint};
 use crate::disk::read::BakedSet;
-use crate::maps::{Bits, LaneMaps, PageMaps, decode_open, soft_visibility};
+use crate::maps::{Bits, LaneMaps, PageMaps, decode_share, soft_visibility};
 use crate::scene::{self, Geometry, LoadLimits, Scene};
 use crate::sun::SunPath;
 use rayon::prelude::*;
 
-/// How far a triangle may lie from where it was, as a share of the scene's half size.
+/// Largest distance of a triangle from where it was, as a share of the scene's half size.
 const MOST_MOVED: f64 = 1e-4;
 
-/// How wrong a set is at each point, in path time and in openness.
-pub(super) struct Errors {
+/// Errors of a set at each point.
+pub(super) struct PlaybackErrors {
+    /// Of the sun, as path time.
     pub sun_t: Vec<f64>,
-    /// None where the set has no ambient occlusion.
-    pub open: Option<Vec<f64>>,
+    /// Of ambient visibility; none where the set has none.
+    pub ambient: Option<Vec<f64>>,
 }
 
-/// Four texels of a page and how much each counts.
-pub(super) type Blend = [(usize, f32); 4];
+/// Four texels of a page and their weights.
+pub(super) type WeightedTexels = [(usize, f32); 4];
 
-/// Compares a set with what is true; `of` is the scene that the points are of.
-pub(super) fn errors(set: &BakedSet, truth: &Truth, of: &Scene) -> Result<Errors, CostError> {
+/// Compares a set with the truth; `of` is the scene that the points lie on.
+pub(super) fn errors(set: &BakedSet, truth: &GroundTruth, of: &Scene) -> Result<PlaybackErrors, CostError> {
     let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
     let geometry = Geometry::new(&scene);
     let atlas = set.manifest.atlas(&scene);
     check(truth, of, &scene, &geometry)?;
-    let blends: Vec<(usize, Blend)> =
-        truth.places.iter().map(|place| blend(place, &scene, &geometry, &atlas)).collect();
-    let shown = Shown { pages: &set.pages, bits: set.bits, path: set.path.as_ref() };
+    let blends: Vec<(usize, WeightedTexels)> =
+        truth.points.iter().map(|place| blend(place, &scene, &geometry, &atlas)).collect();
+    let shown = PlayedMaps { pages: &set.pages, bits: set.bits, path: set.path.as_ref() };
     Ok(shown.errors(truth, &blends))
 }
 
-/// Maps as they are shown.
-pub(super) struct Shown<'a> {
+/// Maps as playback evaluates them.
+pub(super) struct PlayedMaps<'a> {
     pub pages: &'a [PageMaps],
     pub bits: Bits,
-    /// The sun's, if it has one.
+    /// The sun's path, if there is a sun.
     pub path: Option<&'a SunPath>,
 }
 
-impl Shown<'_> {
-    /// How wrong they are at points, of which each reads these texels of this page.
-    pub fn errors(&self, truth: &Truth, blends: &[(usize, Blend)]) -> Errors {
-        let placed = || truth.places.par_iter().zip(blends);
-        let sun_t = placed().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
+impl PlayedMaps<'_> {
+    /// Errors at points; of each point, its page and the texels that it reads.
+    pub fn errors(&self, truth: &GroundTruth, blends: &[(usize, WeightedTexels)]) -> PlaybackErrors {
+        let read_points = || truth.points.par_iter().zip(blends);
+        let sun_t = read_points().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
             let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend));
-            metric::apart_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
+            metric::mean_difference_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
         });
         let sun_t = sun_t.collect();
-        let open = placed().zip(&truth.open).map(|((place, (page, blend)), true_open)| {
-            Some(f64::from((shown_open(&self.pages[*page], place, blend)? - true_open).abs()))
+        let ambient = read_points().zip(&truth.ambient).map(|((place, (page, blend)), true_ambient)| {
+            Some(f64::from((played_ambient(&self.pages[*page], place, blend)? - true_ambient).abs()))
         });
-        Errors { sun_t, open: open.collect() }
+        PlaybackErrors { sun_t, ambient: ambient.collect() }
     }
 
-    /// Share of the disc that is shown at the point's moments.
-    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &Blend) -> Vec<f32> {
+    /// Visible share of the disc at the point's moments.
+    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &WeightedTexels) -> Vec<f32> {
         let discs_per_radian = 0.5 / path.angular_radius_rad.max(1e-9);
         let face = place.face();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
@@ -82,10 +83,10 @@ impl Shown<'_> {
     }
 }
 
-/// The set's scene is that of the points: triangle by triangle the same.
-fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Result<(), CostError> {
+/// Refuses a set whose scene has its triangles elsewhere than the scene of the points.
+fn check(truth: &GroundTruth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Result<(), CostError> {
     let most_m = MOST_MOVED * of.half_extent_m.length();
-    for place in &truth.places {
+    for place in &truth.points {
         let triangle = place.surface.triangle;
         let is_there = (triangle as usize) < geometry.triangles.len();
         let apart_m = if is_there {
@@ -101,8 +102,13 @@ fn check(truth: &Truth, of: &Scene, scene: &Scene, geometry: &Geometry) -> Resul
     Ok(())
 }
 
-/// The page of a point, and the texels around it.
-pub(super) fn blend(place: &SurfaceSample, scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> (usize, Blend) {
+/// The page of a point, and the texels around it with their weights.
+pub(super) fn blend(
+    place: &SurfaceSample,
+    scene: &Scene,
+    geometry: &Geometry,
+    atlas: &Atlas,
+) -> (usize, WeightedTexels) {
     let surface = geometry.surface(place.surface.triangle as usize);
     let page = atlas.placements[surface.instance].page as usize;
     let size = atlas.pages[page];
@@ -118,9 +124,9 @@ pub(super) fn blend(place: &SurfaceSample, scene: &Scene, geometry: &Geometry, a
     (page, std::array::from_fn(|k| (footprint.texels[k], weights[k])))
 }
 
-/// Openness that the set shows.
-fn shown_open(page: &PageMaps, place: &SurfaceSample, blend: &Blend) -> Option<f32> {
+/// Ambient visibility that the set shows at a point.
+fn played_ambient(page: &PageMaps, place: &SurfaceSample, blend: &WeightedTexels) -> Option<f32> {
     let ambient = page.ambient.as_ref()?;
     let side = ambient.back.as_ref().filter(|_| place.is_back).unwrap_or(&ambient.front);
-    Some(blend.iter().map(|&(texel, weight)| weight * decode_open(side.open[texel])).sum())
+    Some(blend.iter().map(|&(texel, weight)| weight * decode_share(side.visibility[texel])).sum())
 }

@@ -1,5 +1,5 @@
 //! `report.json` of `sunbake cost`: format version 1, field by field. Other programs read it, so a change here is a change
-//! of version. `bake/schemas/cost.schema.json` says the same as a JSON schema.
+//! of version. `bake/schemas/cost.schema.json` is the same as a JSON schema.
 
 use crate::report::Machine;
 use serde::{Deserialize, Serialize};
@@ -19,24 +19,24 @@ pub struct CostReport {
     pub version: u32,
     /// Program and version that measured.
     pub generator: String,
-    /// What was measured on.
-    pub scene: SceneEntry,
+    /// The scene that was measured.
+    pub scene: MeasuredScene,
     /// The sun's path.
-    pub sun: SunEntry,
-    /// The machine that all seconds are of.
+    pub sun: MeasuredSun,
+    /// The machine on which all seconds were measured.
     pub machine: Machine,
     /// Seconds that were allowed.
     pub budget_s: f64,
     /// Seconds that it took.
     pub spent_s: f64,
     /// Share of the cores' time that this process got while it measured with all its threads, 0 to 1; null where the system does
-    /// not tell. Well below 1, something else ran, and seconds are longer than they would be alone.
+    /// not tell. Where it is well below 1, other processes ran, and seconds are longer than on an idle machine.
     pub cores_share: Option<f64>,
     /// What errors are measured against.
-    pub reference: ReferenceEntry,
+    pub reference: CostReference,
     /// The measurements, by what was varied.
     pub sweeps: Vec<Sweep>,
-    /// What follows from them, in words: one sentence or two each.
+    /// Recommendations: one or two sentences each.
     pub advice: Vec<String>,
     /// What a user should know about the scene: one sentence each.
     pub warnings: Vec<String>,
@@ -45,7 +45,7 @@ pub struct CostReport {
 /// The scene file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SceneEntry {
+pub struct MeasuredScene {
     /// File name without its folder.
     pub file: String,
     /// SHA-256 of the file and of what it refers to.
@@ -57,7 +57,7 @@ pub struct SceneEntry {
 /// The sun's path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct SunEntry {
+pub struct MeasuredSun {
     /// Start and end by local clocks, `YYYY-MM-DDTHH:MM:SS`; null unless it is a real day.
     pub local: Option<[String; 2]>,
     /// Minutes from start to end.
@@ -69,25 +69,25 @@ pub struct SunEntry {
 /// What errors are measured against.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct ReferenceEntry {
-    /// Points that whole bakes are compared at, drawn evenly by area over all surfaces that are baked; those inside solids,
-    /// which nobody sees, are drawn and left out. Of two-sided surfaces each shows one of its sides, by lot.
+pub struct CostReference {
+    /// Points that whole bakes are compared at, drawn evenly by area over all surfaces that are baked. Points inside solids
+    /// are left out. On double-sided surfaces each point belongs to one side, chosen at random.
     pub points: u64,
     /// Of the points drawn, how many lie inside a solid.
     pub buried_points: u64,
-    /// Lanes across the disc of the exact answer that is taken for true.
+    /// Lanes across the disc of the exact answer that whole bakes are compared with.
     pub lanes: u64,
-    /// Moments of the day at which soft visibility is compared, evenly spaced from a start of each point's own.
+    /// Moments of the day at which soft visibility is compared, evenly spaced from a start that differs from point to point.
     pub moments: u64,
-    /// Rays of sky that the openness of a point is known by.
+    /// Rays of sky for the reference ambient visibility of a point.
     pub point_rays: u64,
-    /// Edge of the page on which knobs are turned.
+    /// Edge of the page whose texels the sweeps sample, in texels.
     pub page_size_texels: u32,
     /// Texels of that page that stand for a point of a surface.
     pub page_texels: u64,
-    /// Of these, how many knobs are measured on, in runs of neighbours.
+    /// Of these, how many the sweeps measure, in runs of neighbours.
     pub measured_texels: u64,
-    /// Rays of sky that the openness of a texel is known by.
+    /// Rays of sky for the reference ambient visibility of a texel.
     pub texel_rays: u64,
 }
 
@@ -97,15 +97,15 @@ pub struct ReferenceEntry {
 pub struct Sweep {
     /// Which one: `presets`, `sizes`, `disc`, `engines`, `bits`, `layers`, `lanes` or `sky`.
     pub id: String,
-    /// The same for people.
+    /// Its title.
     pub title: String,
     /// `whole bakes` or `texels`: see the reference.
     pub measured_on: String,
-    /// What error is meant.
+    /// Which error.
     pub meaning: String,
-    /// The settings, from the cheap to the dear.
+    /// The settings, from cheap to expensive.
     pub rows: Vec<CostRow>,
-    /// Name of the row after which time buys least: the curve's knee, in logarithms of time and error. Null where too few
+    /// Name of the row after which more time gains little: the curve's knee, in logarithms of time and error. Null where too few
     /// rows are measured, or the curve has none.
     pub knee: Option<String>,
 }
@@ -120,23 +120,24 @@ pub struct CostRow {
     pub curve: String,
     /// How it was measured, if it was. If not, `note` says why, and there are no numbers but the prediction.
     pub how: How,
-    /// Why it was not measured; or what a reader should know of it.
+    /// Why it was not measured, or a remark.
     pub note: Option<String>,
     /// Seconds that were predicted for the measurement, from runs before; null where none was needed.
     pub predicted_s: Option<f64>,
-    /// Seconds: of a whole bake, all its stages; of one that was sampled, a prediction of that; of a knob, what it decides,
-    /// scaled to all texels of the page.
+    /// Seconds: of a whole bake, all its stages; of a sparse bake, a prediction of that; of a setting at texels, the stage that it
+    /// changes, scaled to all texels of the page.
     pub seconds: Option<f64>,
     /// Bytes of all files of the set; null where none were written.
     pub disk_bytes: Option<u64>,
-    /// Bytes of what was varied as a GPU holds it: of a whole bake, all its maps.
+    /// Bytes on the GPU of what was varied: of a whole bake, all its maps.
     pub gpu_bytes: Option<u64>,
-    /// Texels that stand for a point of a surface; null for knobs.
+    /// Texels that stand for a point of a surface; null for settings at texels.
     pub texels: Option<u64>,
-    /// Minutes of sun told wrongly; null where the setting does not touch the sun.
-    pub sun_min: Option<ErrorEntry>,
-    /// Error of openness; null where the setting does not touch it.
-    pub open: Option<ErrorEntry>,
+    /// Minutes of sun wrong; null where the setting does not concern the sun.
+    pub sun_min: Option<ErrorSummary>,
+    /// Error of ambient visibility; null where the setting does not concern it.
+    #[serde(rename = "open")]
+    pub ambient: Option<ErrorSummary>,
 }
 
 impl CostRow {
@@ -158,13 +159,13 @@ impl CostRow {
             gpu_bytes: None,
             texels: None,
             sun_min: None,
-            open: None,
+            ambient: None,
         }
     }
 
-    /// The error that the setting is about: of sun, or else of sky.
-    pub(super) fn error(&self) -> Option<&ErrorEntry> {
-        self.sun_min.as_ref().or(self.open.as_ref())
+    /// The error of the sun or, where there is none, of ambient visibility.
+    pub(super) fn error(&self) -> Option<&ErrorSummary> {
+        self.sun_min.as_ref().or(self.ambient.as_ref())
     }
 }
 
@@ -173,27 +174,28 @@ impl CostRow {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum How {
-    /// A set was baked whole, and read from its files.
+    /// Whole bake: a set was baked and read from its files.
     Baked,
-    /// Of a set, those texels were baked that the points read: its error is that of the whole, its seconds are predicted.
+    /// Sparse bake: only the texels that the points read were baked. The error is that of the whole bake, the seconds are predicted.
     Sampled,
-    /// A knob was turned on a sample of the page's texels.
-    Turned,
-    /// It was not.
+    /// The setting was varied on a sample of the page's texels.
+    #[serde(rename = "turned")]
+    AtTexels,
+    /// Not measured.
     NotRun,
 }
 
-/// Distribution of an error over points or texels; all numbers are absolute.
+/// Summary of an error over points or texels, of absolute values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub struct ErrorEntry {
+pub struct ErrorSummary {
     /// Mean.
     pub mean: f64,
     /// Root of the mean square.
     pub rms: f64,
-    /// 99 in 100 are no worse.
+    /// 99th percentile.
     pub p99: f64,
-    /// The worst.
+    /// The largest.
     pub worst: f64,
 }
 
@@ -203,9 +205,9 @@ impl CostReport {
         self.sweeps.iter().find(|sweep| sweep.id == id)
     }
 
-    /// As JSON that people can read, too.
+    /// The report as indented JSON.
     pub fn json(&self) -> String {
-        // Numbers, texts and lists: there is nothing that could fail.
+        // Numbers, strings and lists: serialising cannot fail.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 }

@@ -1,18 +1,18 @@
-//! What is measured, in which order, and what came of it.
+//! The measurements, their order, and their results.
 //!
-//! Presets first, since they are what most people choose from; then knobs that are cheap to turn; then page sizes and lanes;
-//! then knobs that are dear. A bake is predicted from what its stages take a texel, as far as that is known: engine and sky from the
-//! knobs' sample, the rest from reading the scene and laying it out, and all of it corrected by how the standard
-//! preset turned out, or else the last bake.
+//! Presets come first, since most people choose among them; then cheap sweeps at texels; then page sizes and lanes; then expensive
+//! sweeps. The time of a bake is predicted from the time per texel of its stages: engine and sky from the sweeps' sample, the rest
+//! from reading the scene and laying it out. The prediction is corrected by the measured time of the standard preset or, before that
+//! is known, of the last bake.
 
 use super::budget::Budget;
 use super::knee::knee;
-use super::metric::{MOMENTS, distribution};
+use super::metric::{MOMENTS, summary};
 use super::playback;
-use super::report::{CostRow, How, ReferenceEntry, Sweep};
-use super::sparse_bake::around;
-use super::sweeps::{self, Knobs, Turned};
-use super::truth::{self, Truth};
+use super::report::{CostReference, CostRow, How, Sweep};
+use super::sparse_bake::sparse_bake;
+use super::sweeps::{self, SweepPoint, TexelSweeps};
+use super::truth::{self, GroundTruth};
 use super::workload::Workload;
 use super::{CostError, CostSettings};
 use crate::disk::manifest::{Manifest, StageSeconds};
@@ -23,33 +23,33 @@ use crate::settings::{BakeSettings, EngineChoice};
 use crate::{BakeError, bake};
 use std::path::{Path, PathBuf};
 
-/// Points that whole bakes are compared at, at most.
+/// Most points at which whole bakes are compared.
 const MOST_POINTS: usize = 4096;
-/// At least.
+/// Fewest points.
 const LEAST_POINTS: usize = 256;
-/// Share of the budget that finding out what is true there may take.
+/// Share of the budget that finding the exact answers there may take.
 const TRUTH_SHARE: f64 = 0.1;
-/// Share of the time left that a whole bake may take: sampling it is cheap, and there is more to measure.
+/// Share of the time left that a whole bake may take: a sparse bake is cheap, and there is more to measure.
 const WHOLE_SHARE: f64 = 0.4;
-/// How much longer a scattered point takes than one among its neighbours.
+/// How many times as long a scattered point takes as one among its neighbours.
 const SCATTERED: f64 = 2.0;
-/// Seconds that a texel takes besides its engine and its rays: sampling, encoding, writing.
+/// Seconds of a texel besides its engine and its rays: sampling, encoding, writing.
 const TEXEL_S: f64 = 3e-6;
 
-/// A measurement.
+/// A measurement and its result.
 struct Job {
     sweep: &'static str,
     curve: &'static str,
     name: String,
-    kind: Kind,
-    /// What comes first: the least.
+    measurement: Measurement,
+    /// Jobs are run in the order of their ranks.
     rank: u32,
     row: Option<CostRow>,
 }
 
 /// What is measured.
 #[derive(Clone)]
-enum Kind {
+enum Measurement {
     Bake(Box<BakeSettings>),
     Engine(EngineChoice),
     Stored(Bits, usize),
@@ -57,119 +57,120 @@ enum Kind {
     Sky(u32),
 }
 
-/// All measurements of a scene.
-pub(super) struct Jobs<'a> {
+/// All measurements of a scene, and what predicts their times.
+pub(super) struct Schedule<'a> {
     workload: &'a Workload,
     settings: &'a CostSettings,
     work_folder: PathBuf,
     budget: &'a Budget<'a>,
-    knobs: Option<Knobs<'a>>,
-    truth: Option<Truth>,
+    /// None until the sample is measured.
+    sweeps: Option<TexelSweeps<'a>>,
+    truth: Option<GroundTruth>,
     jobs: Vec<Job>,
-    /// Bakes that were measured: settings that occur in several sweeps are baked once.
+    /// Bakes that were measured. Settings that occur in several sweeps are baked once.
     baked: Vec<(BakeSettings, CostRow)>,
-    /// How much longer a texel of the standard preset took than predicted or, before it was baked, one of the last bake.
+    /// Measured over predicted time of a texel: of the standard preset or, before it was baked, of the last bake.
     correction: f64,
-    /// Whether the standard preset has told.
-    is_settled: bool,
-    /// Seconds that a bake takes before its first texel.
+    /// Whether the correction is that of the standard preset.
+    has_standard: bool,
+    /// Seconds of a bake before its first texel.
     fixed_s: f64,
 }
 
-impl<'a> Jobs<'a> {
+impl<'a> Schedule<'a> {
     pub fn new(
         workload: &'a Workload,
         settings: &'a CostSettings,
         work_folder: &Path,
         budget: &'a Budget,
     ) -> Result<Self, CostError> {
-        let mut jobs = Self {
+        let mut schedule = Self {
             workload,
             settings,
             work_folder: work_folder.to_owned(),
             budget,
-            knobs: None,
+            sweeps: None,
             truth: None,
-            jobs: planned(settings),
+            jobs: all_jobs(settings),
             baked: Vec::new(),
             correction: 1.2,
-            is_settled: false,
+            has_standard: false,
             fixed_s: workload.fixed_s,
         };
-        jobs.knobs = Knobs::new(workload, budget);
-        jobs.check_interrupted()?;
-        let Some(knobs) = &jobs.knobs else { return Ok(jobs) };
+        schedule.sweeps = TexelSweeps::new(workload, budget);
+        schedule.check_interrupted()?;
+        let Some(sweeps) = &schedule.sweeps else { return Ok(schedule) };
         let a_point_s =
-            SCATTERED * (knobs.exact_texel_s() * truth::LANES as f64 + knobs.sky_ray_s * f64::from(truth::RAYS));
+            SCATTERED * (sweeps.exact_texel_s() * truth::LANES as f64 + sweeps.sky_ray_s * f64::from(truth::RAYS));
         let affordable = (TRUTH_SHARE * budget.seconds() / a_point_s.max(1e-9)) as usize;
-        jobs.truth = Truth::find(workload, affordable.clamp(LEAST_POINTS, MOST_POINTS), budget);
-        jobs.check_interrupted()?;
-        Ok(jobs)
+        schedule.truth = GroundTruth::find(workload, affordable.clamp(LEAST_POINTS, MOST_POINTS), budget);
+        schedule.check_interrupted()?;
+        Ok(schedule)
     }
 
     fn check_interrupted(&self) -> Result<(), CostError> {
         if self.budget.is_interrupted() { Err(BakeError::Cancelled.into()) } else { Ok(()) }
     }
 
-    /// Runs whatever the budget allows, the most useful first.
+    /// Runs what the budget allows, by rank.
     pub fn run_all(&mut self) -> Result<(), CostError> {
         let mut order: Vec<usize> = (0..self.jobs.len()).collect();
         order.sort_by_key(|&index| self.jobs[index].rank);
         for (done, index) in order.into_iter().enumerate() {
-            let Job { name, curve, kind, .. } = &self.jobs[index];
-            let (name, curve, kind) = (name.clone(), *curve, kind.clone());
+            let Job { name, curve, measurement, .. } = &self.jobs[index];
+            let (name, curve, measurement) = (name.clone(), *curve, measurement.clone());
             self.budget.task(&format!("{} of {}: {name}", done + 1, self.jobs.len()));
-            let row = self.run(&name, curve, &kind)?;
+            let row = self.run(&name, curve, &measurement)?;
             self.check_interrupted()?;
             self.jobs[index].row = Some(row);
         }
         Ok(())
     }
 
-    fn run(&mut self, name: &str, curve: &str, kind: &Kind) -> Result<CostRow, CostError> {
+    fn run(&mut self, name: &str, curve: &str, measurement: &Measurement) -> Result<CostRow, CostError> {
         let stopped = || CostRow::not_run(name, "stopped: it took longer than predicted, and the budget was spent");
-        if let Kind::Bake(settings) = kind {
+        if let Measurement::Bake(settings) = measurement {
             if let Some((_, row)) = self.baked.iter().find(|(baked, _)| baked == settings.as_ref()) {
                 return Ok(CostRow { name: name.into(), ..row.clone() });
             }
-            return Ok(self.bake_or_sample(name, settings)?.unwrap_or_else(stopped));
+            return Ok(self.whole_or_sparse_bake(name, settings)?.unwrap_or_else(stopped));
         }
-        let Some(predicted_s) = self.predicted_s(kind) else { return Ok(stopped()) };
+        let Some(predicted_s) = self.predicted_s(measurement) else { return Ok(stopped()) };
         let row = match self.budget.refusal(predicted_s) {
             Some(why) => CostRow::not_run(name, &why),
-            None => self.turn(kind).map_or_else(stopped, |turned| measured(name, turned)),
+            None => self.measure(measurement).map_or_else(stopped, |point| measured(name, point)),
         };
         Ok(CostRow { curve: curve.into(), predicted_s: Some(predicted_s), ..row })
     }
 
-    /// Turns a knob. None if it was stopped.
-    fn turn(&mut self, kind: &Kind) -> Option<Turned> {
+    /// Measures a setting at texels. None if it was stopped.
+    fn measure(&mut self, measurement: &Measurement) -> Option<SweepPoint> {
         let layer_cap = self.settings.preset(BakeSettings::standard).layer_cap;
-        let (knobs, budget) = (self.knobs.as_mut()?, self.budget);
-        match kind {
-            Kind::Bake(_) => None,
-            Kind::Engine(choice) => knobs.engine(*choice, layer_cap, budget),
-            Kind::Stored(bits, layers) => Some(knobs.stored(*bits, *layers)),
-            Kind::Lanes(count) => knobs.lanes(*count, layer_cap, budget),
-            Kind::Sky(rays) => knobs.sky(*rays, budget),
+        let (sweeps, budget) = (self.sweeps.as_mut()?, self.budget);
+        match measurement {
+            Measurement::Bake(_) => None,
+            Measurement::Engine(choice) => sweeps.engine(*choice, layer_cap, budget),
+            Measurement::Stored(bits, layers) => Some(sweeps.stored(*bits, *layers)),
+            Measurement::Lanes(count) => sweeps.lanes(*count, layer_cap, budget),
+            Measurement::Sky(rays) => sweeps.sky(*rays, budget),
         }
     }
 
-    /// A bake, whole if there is time for it, or else of the texels that are read. None if it was stopped.
-    fn bake_or_sample(&mut self, name: &str, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+    /// A whole bake if there is time for it, or else a sparse bake. None if it was stopped.
+    fn whole_or_sparse_bake(&mut self, name: &str, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
         let Some(predicted_s) = self.bake_s(settings) else { return Ok(None) };
         let refusal = self.budget.refusal(predicted_s / WHOLE_SHARE);
         let row = match refusal {
-            None => self.bake(settings)?,
-            Some(_) => self.sample(settings)?,
+            None => self.whole_bake(settings)?,
+            Some(_) => self.sparse_bake(settings)?,
         };
         let row = row.map(|row| CostRow { name: name.into(), predicted_s: Some(predicted_s), ..row });
         self.baked.extend(row.iter().filter(|row| row.is_measured()).map(|row| (settings.clone(), row.clone())));
         Ok(row)
     }
 
-    /// Bakes, compares, and removes what was baked.
-    fn bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+    /// Bakes, compares, and removes the set.
+    fn whole_bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
         let Some(truth) = &self.truth else { return Ok(None) };
         let folder = self.work_folder.join("baked");
         let manifest = match bake(&self.workload.scene_file, &folder, true, settings, self.budget) {
@@ -182,7 +183,7 @@ impl<'a> Jobs<'a> {
         };
         let set = read::read(&folder)?;
         let errors = self.workload.on_threads(|| playback::errors(&set, truth, self.workload.scene()));
-        // It is removed with the folder around it in any case.
+        // If this fails, the folder around it is removed later.
         let _ = std::fs::remove_dir_all(&folder);
         let row = CostRow {
             note: page_note(&manifest, settings),
@@ -196,13 +197,13 @@ impl<'a> Jobs<'a> {
         Ok(Some(row))
     }
 
-    /// Bakes the texels that are read, and predicts the rest.
-    fn sample(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
-        let Some((truth, sample_s)) = self.truth.as_ref().zip(self.sample_s(settings)) else { return Ok(None) };
-        if let Some(why) = self.budget.refusal(sample_s) {
+    /// Bakes the texels that are read, and predicts the time of all.
+    fn sparse_bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+        let Some((truth, sparse_s)) = self.truth.as_ref().zip(self.sparse_bake_s(settings)) else { return Ok(None) };
+        if let Some(why) = self.budget.refusal(sparse_s) {
             return Ok(Some(CostRow::not_run("", &why)));
         }
-        let Some(found) = around(self.workload, truth, settings, self.budget)? else { return Ok(None) };
+        let Some(found) = sparse_bake(self.workload, truth, settings, self.budget)? else { return Ok(None) };
         Ok(Some(CostRow {
             note: Some("texels around the points only; time predicted".into()),
             seconds: self.bake_s_of(settings, found.texels as f64),
@@ -212,54 +213,54 @@ impl<'a> Jobs<'a> {
         }))
     }
 
-    fn with_errors(&self, how: How, errors: playback::Errors) -> CostRow {
+    fn with_errors(&self, how: How, errors: playback::PlaybackErrors) -> CostRow {
         let minutes = errors.sun_t.into_iter().map(|t| t * self.workload.path().duration_min).collect();
-        let open = errors.open.and_then(distribution);
-        CostRow { how, note: None, sun_min: distribution(minutes), open, ..CostRow::not_run("", "") }
+        let ambient = errors.ambient.and_then(summary);
+        CostRow { how, note: None, sun_min: summary(minutes), ambient, ..CostRow::not_run("", "") }
     }
 
-    /// Learns from how long a bake's texels took.
+    /// Corrects predictions by the time that a bake's texels took.
     fn correct(&mut self, settings: &BakeSettings, manifest: &Manifest) {
         let StageSeconds { load, unwrap, bvh, .. } = manifest.stats.seconds;
         let took_s = total_s(&manifest.stats.seconds) - load - unwrap - bvh;
         let is_standard = *settings == self.settings.preset(BakeSettings::standard);
-        if let Some(texel_s) = self.texel_s(settings).filter(|_| is_standard || !self.is_settled) {
-            self.is_settled |= is_standard;
+        if let Some(texel_s) = self.texel_s(settings).filter(|_| is_standard || !self.has_standard) {
+            self.has_standard |= is_standard;
             let predicted_s = texel_s * manifest.stats.texels as f64;
             self.correction = (took_s / predicted_s.max(1e-9)).clamp(0.2, 5.0);
         }
         self.fixed_s = self.fixed_s.max(load + unwrap + bvh);
     }
 
-    /// Seconds that a measurement may take; unknown where nothing could be measured.
-    fn predicted_s(&self, kind: &Kind) -> Option<f64> {
-        let knobs = self.knobs.as_ref()?;
-        let sun_s = |which: usize| knobs.sun_s[which].unwrap_or(knobs.exact_s / 60.0);
-        Some(match kind {
-            Kind::Bake(settings) => self.bake_s(settings)?,
-            Kind::Engine(EngineChoice::Exact) => 3.0 * knobs.exact_s,
-            Kind::Engine(EngineChoice::Rays(count)) => sun_s(0) * *count as f64,
-            Kind::Engine(EngineChoice::Bisect(count)) => sun_s(1) * *count as f64,
-            Kind::Stored(..) => knobs.exact_s,
-            Kind::Lanes(count) => 1.5 * knobs.exact_s * *count as f64 + knobs.disc_ready_s(),
-            Kind::Sky(rays) => knobs.sky_s(*rays),
+    /// Predicted seconds of a measurement; unknown where nothing could be measured.
+    fn predicted_s(&self, measurement: &Measurement) -> Option<f64> {
+        let sweeps = self.sweeps.as_ref()?;
+        let sun_s = |which: usize| sweeps.sun_s[which].unwrap_or(sweeps.exact_s / 60.0);
+        Some(match measurement {
+            Measurement::Bake(settings) => self.bake_s(settings)?,
+            Measurement::Engine(EngineChoice::Exact) => 3.0 * sweeps.exact_s,
+            Measurement::Engine(EngineChoice::Rays(count)) => sun_s(0) * *count as f64,
+            Measurement::Engine(EngineChoice::Bisect(count)) => sun_s(1) * *count as f64,
+            Measurement::Stored(..) => sweeps.exact_s,
+            Measurement::Lanes(count) => 1.5 * sweeps.exact_s * *count as f64 + sweeps.disc_ready_s(),
+            Measurement::Sky(rays) => sweeps.sky_s(*rays),
         })
     }
 
     /// Seconds that a texel of a bake takes, uncorrected.
     fn texel_s(&self, settings: &BakeSettings) -> Option<f64> {
-        let knobs = self.knobs.as_ref()?;
+        let sweeps = self.sweeps.as_ref()?;
         let rays = settings.ambient.map_or(0, |request| request.estimate.rays);
         let lanes = settings.lane_count as f64;
-        Some(lanes * (knobs.exact_texel_s() + TEXEL_S) + f64::from(rays) * knobs.sky_ray_s)
+        Some(lanes * (sweeps.exact_texel_s() + TEXEL_S) + f64::from(rays) * sweeps.sky_ray_s)
     }
 
-    /// Seconds of a bake of so many texels.
+    /// Predicted seconds of a bake of this many texels.
     fn bake_s_of(&self, settings: &BakeSettings, texels: f64) -> Option<f64> {
         Some(self.fixed_s + self.correction * texels * self.texel_s(settings)?)
     }
 
-    /// Seconds of a bake.
+    /// Predicted seconds of a bake.
     fn bake_s(&self, settings: &BakeSettings) -> Option<f64> {
         self.bake_s_of(settings, self.texels(settings))
     }
@@ -271,30 +272,30 @@ impl<'a> Jobs<'a> {
         page.samples.len() as f64 * finer * finer
     }
 
-    /// Seconds until the texels that are read are baked.
-    fn sample_s(&self, settings: &BakeSettings) -> Option<f64> {
-        let read = 4.0 * self.truth.as_ref()?.places.len() as f64;
+    /// Predicted seconds of a sparse bake.
+    fn sparse_bake_s(&self, settings: &BakeSettings) -> Option<f64> {
+        let read = 4.0 * self.truth.as_ref()?.points.len() as f64;
         Some(2.0 * self.fixed_s + 1e-6 * self.texels(settings) + SCATTERED * read * self.texel_s(settings)?)
     }
 
     /// The sweeps with their knees, and what they were measured against.
-    pub fn finish(self) -> (Vec<Sweep>, ReferenceEntry) {
+    pub fn finish(self) -> (Vec<Sweep>, CostReference) {
         let page = &self.workload.page;
-        let reference = ReferenceEntry {
-            points: self.truth.as_ref().map_or(0, |truth| truth.places.len() as u64),
+        let reference = CostReference {
+            points: self.truth.as_ref().map_or(0, |truth| truth.points.len() as u64),
             buried_points: self.truth.as_ref().map_or(0, |truth| truth.buried as u64),
             lanes: self.workload.lanes(truth::LANES).0.len() as u64,
             moments: MOMENTS as u64,
             point_rays: truth::RAYS.into(),
             page_size_texels: page.edge_texels,
             page_texels: page.samples.len() as u64,
-            measured_texels: self.knobs.as_ref().map_or(0, |knobs| knobs.texel_count() as u64),
+            measured_texels: self.sweeps.as_ref().map_or(0, |sweeps| sweeps.texel_count() as u64),
             texel_rays: sweeps::RAYS.into(),
         };
         let mut rows = self.jobs;
         let sweeps = SWEEPS.iter().map(|&[id, title, measured_on, meaning]| {
             let of_sweep = rows.extract_if(.., |job| job.sweep == id).filter_map(|job| job.row).collect();
-            swept([id, title, measured_on, meaning], of_sweep)
+            sweep_of([id, title, measured_on, meaning], of_sweep)
         });
         (sweeps.collect(), reference)
     }
@@ -302,9 +303,9 @@ impl<'a> Jobs<'a> {
 
 const BAKES: &str = "whole bakes";
 const TEXELS: &str = "texels";
-const SEEN: &str = "minutes of sun told wrongly at a point of a surface, of all that a bake loses";
+const SEEN: &str = "minutes of sun wrong at a point of a surface, from everything that a bake loses";
 
-/// Id, title, what it is measured on, and what error is meant.
+/// Id, title, what it is measured on, and which error.
 const SWEEPS: [[&str; 4]; 8] = [
     ["presets", "Presets", BAKES, SEEN],
     ["sizes", "Texels: standard with other page sizes", BAKES, SEEN],
@@ -318,11 +319,11 @@ const SWEEPS: [[&str; 4]; 8] = [
     ],
     ["layers", "Layers", TEXELS, "minutes in which the stored times of a texel differ from its exact ones"],
     ["lanes", "Lanes, at texels", TEXELS, "minutes of the disc's visibility at a texel, before anything is stored"],
-    ["sky", "Rays of sky", TEXELS, "difference of openness at a texel, before anything is stored"],
+    ["sky", "Rays of sky", TEXELS, "difference of ambient visibility at a texel, before anything is stored"],
 ];
 
-fn swept([id, title, measured_on, meaning]: [&str; 4], rows: Vec<CostRow>) -> Sweep {
-    // A knee is one curve's: the first, where a sweep has several.
+fn sweep_of([id, title, measured_on, meaning]: [&str; 4], rows: Vec<CostRow>) -> Sweep {
+    // The knee is that of the first curve, where a sweep has several.
     let curve: Vec<&CostRow> =
         rows.iter().filter(|row| rows.first().is_some_and(|first| first.curve == row.curve)).collect();
     let pair = |row: &&CostRow| Some((row.seconds?, row.error()?.mean));
@@ -333,9 +334,11 @@ fn swept([id, title, measured_on, meaning]: [&str; 4], rows: Vec<CostRow>) -> Sw
 }
 
 /// All measurements, in the order of their tables.
-fn planned(settings: &CostSettings) -> Vec<Job> {
+fn all_jobs(settings: &CostSettings) -> Vec<Job> {
     let mut jobs = Vec::new();
-    let mut add = |sweep, curve, rank, name: String, kind| jobs.push(Job { sweep, curve, name, kind, rank, row: None });
+    let mut add = |sweep, curve, rank, name: String, measurement| {
+        jobs.push(Job { sweep, curve, name, measurement, rank, row: None });
+    };
     let standard = settings.preset(BakeSettings::standard);
     let presets: [(&str, fn(_) -> _, u32); 3] = [
         ("draft", BakeSettings::draft, 0),
@@ -343,52 +346,52 @@ fn planned(settings: &CostSettings) -> Vec<Job> {
         ("final", BakeSettings::final_quality, 20),
     ];
     for (name, of, rank) in presets {
-        add("presets", "", rank, format!("--preset {name}"), Kind::Bake(Box::new(settings.preset(of))));
+        add("presets", "", rank, format!("--preset {name}"), Measurement::Bake(Box::new(settings.preset(of))));
     }
     for (page_size_texels, rank) in [(256, 25), (512, 24), (1024, 21), (2048, 20), (4096, 23)] {
         let sized = BakeSettings { page_size_texels, ..standard.clone() };
-        add("sizes", "", rank, format!("--size {page_size_texels}"), Kind::Bake(Box::new(sized)));
+        add("sizes", "", rank, format!("--size {page_size_texels}"), Measurement::Bake(Box::new(sized)));
     }
     for (lane_count, rank) in [(1, 20), (3, 22), (5, 26)] {
         let laned = BakeSettings { lane_count, ..standard.clone() };
-        add("disc", "", rank, format!("--lanes {lane_count}"), Kind::Bake(Box::new(laned)));
+        add("disc", "", rank, format!("--lanes {lane_count}"), Measurement::Bake(Box::new(laned)));
     }
     for count in (4..=12).map(|bits| 1 << bits) {
         let rank = if count > 512 { 40 } else { 10 };
-        add("engines", "rays", rank, format!("rays:{count}"), Kind::Engine(EngineChoice::Rays(count)));
+        add("engines", "rays", rank, format!("rays:{count}"), Measurement::Engine(EngineChoice::Rays(count)));
     }
     for count in (4..=8).map(|bits| 1 << bits) {
-        add("engines", "bisect", 11, format!("bisect:{count}"), Kind::Engine(EngineChoice::Bisect(count)));
+        add("engines", "bisect", 11, format!("bisect:{count}"), Measurement::Engine(EngineChoice::Bisect(count)));
     }
-    add("engines", "exact", 9, "exact".into(), Kind::Engine(EngineChoice::Exact));
+    add("engines", "exact", 9, "exact".into(), Measurement::Engine(EngineChoice::Exact));
     for bits in [Bits::Eight, Bits::Sixteen] {
-        add("bits", "", 12, format!("--bits {}", bits.count()), Kind::Stored(bits, MOST_LAYERS));
+        add("bits", "", 12, format!("--bits {}", bits.count()), Measurement::Stored(bits, MOST_LAYERS));
     }
     for layers in [1, 2, 4, 8, MOST_LAYERS] {
-        add("layers", "", 13, format!("--layers {layers}"), Kind::Stored(Bits::Sixteen, layers));
+        add("layers", "", 13, format!("--layers {layers}"), Measurement::Stored(Bits::Sixteen, layers));
     }
     for count in [1, 3, 5] {
-        add("lanes", "", 14, format!("--lanes {count}"), Kind::Lanes(count));
+        add("lanes", "", 14, format!("--lanes {count}"), Measurement::Lanes(count));
     }
     for rays in (2..=12).map(|bits| 1u32 << bits) {
         let rank = if rays > 512 { 41 } else { 15 };
-        add("sky", "", rank, format!("--ao-rays {rays}"), Kind::Sky(rays));
+        add("sky", "", rank, format!("--ao-rays {rays}"), Measurement::Sky(rays));
     }
     jobs
 }
 
-/// As many layers as there are.
+/// Most layers that a set can have.
 const MOST_LAYERS: usize = 16;
 
-fn measured(name: &str, turned: Turned) -> CostRow {
-    let Turned { seconds, gpu_bytes, sun_min, open } = turned;
+fn measured(name: &str, point: SweepPoint) -> CostRow {
+    let SweepPoint { seconds, gpu_bytes, sun_min, ambient } = point;
     CostRow {
-        how: How::Turned,
+        how: How::AtTexels,
         note: None,
         seconds: Some(seconds),
         gpu_bytes: Some(gpu_bytes),
         sun_min,
-        open,
+        ambient,
         ..CostRow::not_run(name, "")
     }
 }
@@ -398,7 +401,7 @@ fn total_s(seconds: &StageSeconds) -> f64 {
     load + unwrap + bvh + visibility + ambient + encode + write
 }
 
-/// Where a page had to be larger than asked for.
+/// A note where a page had to be larger than asked for.
 fn page_note(manifest: &Manifest, settings: &BakeSettings) -> Option<String> {
     let edge = manifest.atlases.iter().map(|atlas| atlas.width.max(atlas.height)).max()?;
     (edge > settings.page_size_texels).then(|| format!("a mesh has too many charts: baked on a page of {edge}"))

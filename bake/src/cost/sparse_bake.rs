@@ -1,36 +1,37 @@
-//! A bake of nothing but the texels that are read: what a set would show at points, without baking the rest of it.
+//! A bake of only the texels that are read: what a set would show at points, without baking the rest of it.
 //!
-//! The scene is laid out as for the bake. Of the four texels around every point, each that a triangle touches is asked, others
-//! take the value of the gutter's source. Times are encoded with the bits, layers and lanes of the bake, and compared as if
-//! they had been read from its files: sun comes out the same to the last bit (a test compares the two). Openness lacks the
-//! healing of cuts and what buried texels show, which need the whole page. Seconds are a prediction, and of bytes only those
-//! on the GPU are known, from the layers that these texels need.
+//! The scene is laid out as for the whole bake. Of the four texels around every point, each that is covered is baked; others take the
+//! value of their source in the gutter. Times are encoded with the bits, layers and lanes of the bake, and compared as if they had
+//! been read from its files: the sun's errors are the same to the last bit (a test compares the two). Ambient visibility lacks
+//! the stitching of seams and the filling of buried texels, which need the whole page. Seconds are a prediction. Only the bytes on
+//! the GPU are known, from the layers that these texels need.
 
 use super::budget::Budget;
-use super::playback::{self, Blend, Errors, Shown};
-use super::truth::{self, Truth};
+use super::playback::{self, PlaybackErrors, PlayedMaps};
+use super::truth::{self, GroundTruth};
 use super::workload::Workload;
 use crate::ambient::AmbientPoint;
 use crate::atlas::{self, Atlas, GutterTexel, PageSamples, Sample, SurfacePoint};
 use crate::bake::unwrap_somehow;
-use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_open};
+use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_share};
 use crate::progress::Progress;
 use crate::settings::{AmbientRequest, BakeSettings};
 use crate::{BakeError, progress::BakeStage};
 use std::collections::{HashMap, HashSet};
 
-/// What was found.
+/// The result of a sparse bake.
 pub(super) struct SparseBake {
-    pub errors: Errors,
+    pub errors: PlaybackErrors,
+    /// Bytes of all maps on the GPU, scaled to whole pages.
     pub gpu_bytes: u64,
     /// Texels of all pages that stand for a point.
     pub texels: u64,
 }
 
-/// Asks the texels around the points. None if it was stopped.
-pub(super) fn around(
+/// Bakes the texels around the points. None if it was stopped.
+pub(super) fn sparse_bake(
     workload: &Workload,
-    truth: &Truth,
+    truth: &GroundTruth,
     settings: &BakeSettings,
     budget: &Budget,
 ) -> Result<Option<SparseBake>, BakeError> {
@@ -42,35 +43,35 @@ pub(super) fn around(
         Err(error) => return Err(error),
     };
     budget.start(BakeStage::Encode, 0);
-    let read = workload.on_threads(|| Read::new(workload, truth, &atlas, settings.padding_texels));
-    Ok(read.answer(workload, truth, &settings, atlas.texel_count(), budget))
+    let texels = workload.on_threads(|| SparseTexels::new(workload, truth, &atlas, settings.padding_texels));
+    Ok(texels.bake(workload, truth, &settings, atlas.texel_count(), budget))
 }
 
-/// The texels that are read, and by which point.
-struct Read {
-    /// Texels that are asked, each once.
+/// The texels that are read, and the points that read them.
+struct SparseTexels {
+    /// Texels that are baked, each once.
     samples: Vec<Sample>,
-    /// For each point, places in `samples`, and one beyond them for texels that nothing touches.
-    blends: Vec<Blend>,
+    /// For each point, indices in `samples`, or `samples.len()` for texels that are not covered.
+    blends: Vec<WeightedTexels>,
     texels: u64,
 }
 
-impl Read {
-    fn new(workload: &Workload, truth: &Truth, atlas: &Atlas, padding: u32) -> Self {
+impl SparseTexels {
+    fn new(workload: &Workload, truth: &GroundTruth, atlas: &Atlas, padding: u32) -> Self {
         let (scene, geometry) = (workload.scene(), &workload.geometry);
-        let of_pages: Vec<(usize, Blend)> =
-            truth.places.iter().map(|place| playback::blend(place, scene, geometry, atlas)).collect();
-        let mut read = Self { samples: Vec::new(), blends: vec![Blend::default(); of_pages.len()], texels: 0 };
-        // Texels that nothing touches, marked until it is known how many there are that something does.
-        const NOTHING: usize = usize::MAX;
+        let of_pages: Vec<(usize, WeightedTexels)> =
+            truth.points.iter().map(|place| playback::blend(place, scene, geometry, atlas)).collect();
+        let mut read = Self { samples: Vec::new(), blends: vec![WeightedTexels::default(); of_pages.len()], texels: 0 };
+        // Texels that are not covered, until it is known how many are.
+        const UNCOVERED: usize = usize::MAX;
         for (page, &size) in atlas.pages.iter().enumerate() {
             let samples = atlas::sample_page(scene, geometry, atlas, page as u32);
             read.texels += samples.samples.len() as u64;
             let on_page = of_pages.iter().enumerate().filter(|(_, (of, _))| *of == page);
             let texels = on_page.clone().flat_map(|(_, (_, blend))| blend.iter().map(|(texel, _)| *texel));
-            let found = read.ask(&texels.collect(), &samples, &atlas::gutter(size, &samples, padding));
+            let found = read.add(&texels.collect(), &samples, &atlas::gutter(size, &samples, padding));
             for (point, (_, blend)) in on_page {
-                read.blends[point] = blend.map(|(texel, weight)| (*found.get(&texel).unwrap_or(&NOTHING), weight));
+                read.blends[point] = blend.map(|(texel, weight)| (*found.get(&texel).unwrap_or(&UNCOVERED), weight));
             }
         }
         let beyond = read.samples.len();
@@ -78,8 +79,8 @@ impl Read {
         read
     }
 
-    /// Adds those of a page's samples that stand for these texels, and gives back where each texel's is.
-    fn ask(&mut self, texels: &HashSet<usize>, page: &PageSamples, gutter: &[GutterTexel]) -> HashMap<usize, usize> {
+    /// Adds the samples of these texels of a page. Gives the index of each texel's sample.
+    fn add(&mut self, texels: &HashSet<usize>, page: &PageSamples, gutter: &[GutterTexel]) -> HashMap<usize, usize> {
         let own = page.samples.iter().enumerate().map(|(k, sample)| (sample.texel as usize, k));
         let copied = gutter.iter().map(|copy| (copy.texel as usize, copy.sample as usize));
         let mut place_of: HashMap<usize, usize> = HashMap::new();
@@ -94,10 +95,10 @@ impl Read {
         found
     }
 
-    fn answer(
+    fn bake(
         self,
         workload: &Workload,
-        truth: &Truth,
+        truth: &GroundTruth,
         settings: &BakeSettings,
         page_texels: u64,
         budget: &Budget,
@@ -107,12 +108,13 @@ impl Read {
             Some(request) => Some(self.sky(workload, request, budget)?),
             None => None,
         };
-        // A page one texel high, with one texel more that nothing touches.
+        // A page one texel high, with one uncovered texel at the end.
         let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient };
         let gpu_bytes = page.gpu_bytes(settings.bits) / u64::from(page.width) * page_texels;
-        let shown = Shown { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };
-        let blends: Vec<(usize, Blend)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
-        let errors = workload.on_threads(|| shown.errors(truth, &blends));
+        let played =
+            PlayedMaps { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };
+        let blends: Vec<(usize, WeightedTexels)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
+        let errors = workload.on_threads(|| played.errors(truth, &blends));
         Some(SparseBake { errors, gpu_bytes, texels: self.texels })
     }
 
@@ -137,22 +139,22 @@ impl Read {
             shading_normal: workload.shading_normal(sample.triangle, sample.barycentric.map(f64::from)),
         };
         let points: Vec<AmbientPoint> = self.samples.iter().map(point).collect();
-        let engine = workload.sky(request.estimate.rays, request.estimate.seed);
-        let (runs, _) = workload.find_open(&engine, &points, budget)?;
+        let engine = workload.ambient_engine(request.estimate.rays, request.estimate.seed);
+        let (runs, _) = workload.solve_ambient_at(&engine, &points, budget)?;
         let sides: Vec<[f32; 2]> = runs.iter().flat_map(truth::sides).collect();
         let has_backs = points.iter().any(|point| point.surface.is_double_sided);
         let side = |k: usize| AmbientSide {
-            open: sides.iter().map(|side| code(side[k], request.bits)).chain([0]).collect(),
+            visibility: sides.iter().map(|side| code(side[k], request.bits)).chain([0]).collect(),
             ..AmbientSide::default()
         };
         Some(AmbientMaps { front: side(0), back: has_backs.then(|| side(1)) })
     }
 }
 
-/// The code that is read of an openness stored with these bits.
-fn code(open: f32, bits: Bits) -> u16 {
+/// The code of an ambient visibility, after it was stored with these bits.
+fn code(visibility: f32, bits: Bits) -> u16 {
     match bits {
-        Bits::Sixteen => encode_open(open),
-        Bits::Eight => (open.clamp(0.0, 1.0) * 255.0).round() as u16 * 257,
+        Bits::Sixteen => encode_share(visibility),
+        Bits::Eight => (visibility.clamp(0.0, 1.0) * 255.0).round() as u16 * 257,
     }
 }

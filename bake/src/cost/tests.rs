@@ -1,11 +1,11 @@
-//! Whether errors are what they say: known answers first, then a bake against the same bake by another way.
+//! Tests of the measured errors: known answers first, then a whole bake against a sparse one.
 
 use super::budget::Budget;
-use super::metric::of_disc;
-use super::playback::{self, Blend, Shown};
-use super::truth::{SurfaceSample, Truth};
+use super::metric::disc_visibility;
+use super::playback::{self, PlayedMaps, WeightedTexels};
+use super::truth::{GroundTruth, SurfaceSample};
 use super::workload::Workload;
-use super::{CostSettings, sparse_bake::around};
+use super::{CostSettings, sparse_bake::sparse_bake};
 use crate::atlas::{self, AtlasSettings, SurfacePoint};
 use crate::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::Silent;
@@ -29,35 +29,35 @@ fn summer_path() -> SunPath {
     }
 }
 
-/// A page of four texels with these times, and what is true at a point in their midst.
-fn shown_minutes(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
+/// Minutes of error at a point amid four texels with these times, given the true times.
+fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
     let path = summer_path();
     let surface = SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0 };
     let place = SurfaceSample { surface, barycentric: [0.3; 2], is_back: false, start: 0.37, shading_normal: DVec3::Y };
     let lit = Intervals::from_unsorted(truth.to_vec());
-    let sun = of_disc(&[lit], &[Lane::CENTRE], &path, place.start);
-    let truth = Truth { places: vec![place], sun: vec![sun], open: vec![0.0], buried: 0 };
+    let sun = disc_visibility(&[lit], &[Lane::CENTRE], &path, place.start);
+    let truth = GroundTruth { points: vec![place], sun: vec![sun], ambient: vec![0.0], buried: 0 };
     let mut encoder = PageEncoder::new(4, Bits::Sixteen, 4);
     for (texel, lit) in texels.iter().enumerate() {
         encoder.set(texel, &Intervals::from_unsorted(lit.to_vec()));
     }
     let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
     let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None };
-    let blend: Blend = [0, 1, 2, 3].map(|texel| (texel, 0.25));
-    let shown = Shown { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
-    shown.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min
+    let blend: WeightedTexels = [0, 1, 2, 3].map(|texel| (texel, 0.25));
+    let played = PlayedMaps { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
+    played.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min
 }
 
 #[test]
-fn what_is_true_has_no_error() {
+fn the_truth_has_no_error() {
     let day: &[[f64; 2]] = &[[0.2, 0.4], [0.5, 0.8]];
-    let minutes = shown_minutes([day; 4], day);
+    let minutes = minutes_wrong([day; 4], day);
     // Codes are 0.8 seconds apart.
     assert!(minutes < 0.03, "{minutes}");
 }
 
 #[test]
-fn times_that_are_late_by_so_many_minutes_read_as_so_many() {
+fn times_that_are_late_by_some_minutes_are_wrong_by_as_many() {
     let duration_min = summer_path().duration_min;
     for late_min in [1.0, 7.0, 30.0] {
         let late = late_min / duration_min;
@@ -66,19 +66,19 @@ fn times_that_are_late_by_so_many_minutes_read_as_so_many() {
         let both: &[[f64; 2]] = &[[0.2 + late, 0.6 + late]];
         // One moment is 0.9 minutes, of which a ramp as wide as the sun leaves little.
         let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.1, "{found} for {expected}");
-        close(shown_minutes([evening; 4], day), late_min);
-        close(shown_minutes([both; 4], day), 2.0 * late_min);
+        close(minutes_wrong([evening; 4], day), late_min);
+        close(minutes_wrong([both; 4], day), 2.0 * late_min);
     }
 }
 
 #[test]
-fn one_wrong_texel_is_seen_by_its_share() {
+fn one_wrong_texel_counts_by_its_weight() {
     let day: &[[f64; 2]] = &[[0.25, 0.75]];
     let expected = 0.25 * 0.5 * summer_path().duration_min;
     for wrong in 0..4 {
         let mut texels = [day; 4];
         texels[wrong] = &[];
-        let minutes = shown_minutes(texels, day);
+        let minutes = minutes_wrong(texels, day);
         assert!((minutes - expected).abs() < 0.5, "{minutes} for {expected}");
     }
 }
@@ -104,36 +104,36 @@ fn settings() -> CostSettings {
 }
 
 /// Errors of a small bake at 300 points, from its files and from the texels around the points.
-fn both_ways(scene: &Scene, lane_count: usize) -> [playback::Errors; 2] {
+fn both_ways(scene: &Scene, lane_count: usize) -> [playback::PlaybackErrors; 2] {
     let desk = tempfile::tempdir().unwrap();
     let file = file(scene, desk.path());
     let settings = settings();
     let budget = Budget::new(settings.budget_s, &Silent);
     let workload = Workload::new(&file, &settings, &budget).unwrap();
-    let truth = Truth::find(&workload, 300, &budget).unwrap();
+    let truth = GroundTruth::find(&workload, 300, &budget).unwrap();
     let standard = settings.preset(BakeSettings::standard);
     let asked = BakeSettings { page_size_texels: 64, lane_count, ..standard };
     bake(&file, &desk.path().join("set"), false, &asked, &Silent).unwrap();
     let set = disk::read::read(&desk.path().join("set")).unwrap();
     let whole = playback::errors(&set, &truth, workload.scene()).unwrap();
-    let sampled = around(&workload, &truth, &asked, &budget).unwrap().unwrap();
+    let sampled = sparse_bake(&workload, &truth, &asked, &budget).unwrap().unwrap();
     assert_eq!(sampled.texels, set.manifest.stats.texels);
     [whole, sampled.errors]
 }
 
 #[test]
-fn an_open_floor_is_told_rightly() {
+fn an_open_floor_has_next_to_no_error() {
     let scene = SceneBuilder::new().soup(&floor(Vec2::ZERO, Vec2::splat(10.0), 0.0)).build();
     let [whole, _] = both_ways(&scene, 1);
     let duration_min = summer_path().duration_min;
     let worst = whole.sun_t.iter().fold(0.0, |worst: f64, t| worst.max(t * duration_min));
-    // What is left is sunrise and sunset, which one lane and a plane's share of the disc tell otherwise than seventeen lanes.
+    // What remains is sunrise and sunset, where one lane and the plane's share of the disc differ from seventeen lanes.
     assert!(whole.sun_t.len() == 300 && worst < 1.5, "{worst}");
-    assert!(whole.open.unwrap().iter().all(|&error| error < 1e-4));
+    assert!(whole.ambient.unwrap().iter().all(|&error| error < 1e-4));
 }
 
 #[test]
-fn a_bake_of_nothing_but_the_texels_around_points_shows_what_the_whole_bake_shows() {
+fn a_sparse_bake_shows_what_the_whole_bake_shows() {
     let mut triangles = floor(Vec2::ZERO, Vec2::splat(10.0), 0.0);
     triangles.extend(block(Vec3::new(3.0, 0.5, 3.0), Vec3::new(4.0, 4.0, 7.0)));
     let scene = SceneBuilder::new().soup(&triangles).build();
@@ -141,8 +141,8 @@ fn a_bake_of_nothing_but_the_texels_around_points_shows_what_the_whole_bake_show
         let [whole, sampled] = both_ways(&scene, lane_count);
         assert_eq!(whole.sun_t, sampled.sun_t);
         let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
-        let [a, b] = [whole.open.unwrap(), sampled.open.unwrap()].map(|open| mean(&open));
+        let [a, b] = [whole.ambient.unwrap(), sampled.ambient.unwrap()].map(|errors| mean(&errors));
         assert!((a - b).abs() < 0.004, "{a} {b}");
-        assert!(mean(&whole.sun_t) > 1e-4, "a block casts a shadow that such texels cannot show");
+        assert!(mean(&whole.sun_t) > 1e-4, "a block casts a shadow that texels this large cannot show");
     }
 }

@@ -1,8 +1,8 @@
-//! What is true at points of surfaces: when each sees how much of the sun's disc, and how much of the sky.
+//! The true answer at points of surfaces: how much of the sun's disc each sees at which time, and how much of the sky.
 //!
-//! Points are drawn evenly by area over everything that is baked: one in each of as many equal shares of the area as there
-//! are points, so that none of it is passed over. The sun is found by the exact engine along [`LANES`] lanes at the point
-//! itself, not at a texel; the sky by [`RAYS`] rays with a seed that no bake uses. Points inside solids are left out.
+//! Points are drawn evenly by area over everything that is baked: one in each of equal shares of the area. The sun is found by the
+//! exact engine along [`LANES`] lanes at the point itself, not at a texel; the sky by [`RAYS`] rays with a seed that no bake uses.
+//! Points inside solids are left out.
 
 use super::budget::Budget;
 use super::metric;
@@ -17,11 +17,11 @@ use crate::visibility::{ExactEngine, Intervals};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Lanes across the disc. What they see of an edge differs from the disc's share by a thousandth on average.
+/// Lanes across the disc. Near an edge they differ from the disc's true share by a thousandth on average.
 pub(super) const LANES: usize = 17;
 /// Rays of sky.
 pub(super) const RAYS: u32 = 4096;
-/// Seed of rays that no bake has.
+/// Seed of the rays, which no bake uses.
 pub(super) const SEED: u32 = 0x7a57;
 
 /// A point of a surface, seen from one of its sides.
@@ -30,44 +30,44 @@ pub(super) struct SurfaceSample {
     pub surface: SurfacePoint,
     /// Weights of its triangle's second and third corner.
     pub barycentric: [f64; 2],
-    /// Whether it is seen from the back.
+    /// Whether the surface is viewed from the back.
     pub is_back: bool,
     /// Where its moments start, see [`metric::moments`].
     pub start: f64,
-    /// Unit normal that the surface is meant to have, on its front.
+    /// Unit shading normal, on the surface's front.
     pub shading_normal: DVec3,
 }
 
 impl SurfaceSample {
-    /// Unit normal of the plane, towards who sees it.
+    /// Unit normal of the plane, towards the viewed side.
     pub fn face(&self) -> DVec3 {
         if self.is_back { -self.surface.normal } else { self.surface.normal }
     }
 }
 
-/// Points, and what is true there.
-pub(super) struct Truth {
-    pub places: Vec<SurfaceSample>,
-    /// Share of the disc at each moment.
+/// Points with the true answers there.
+pub(super) struct GroundTruth {
+    pub points: Vec<SurfaceSample>,
+    /// Of each point, the visible share of the disc at each moment.
     pub sun: Vec<Vec<f32>>,
-    /// Openness of the side that is seen.
-    pub open: Vec<f32>,
-    /// How many points were drawn inside solids.
+    /// Of each point, the ambient visibility of its side.
+    pub ambient: Vec<f32>,
+    /// How many points were left out because they lie inside solids.
     pub buried: usize,
 }
 
-impl Truth {
-    /// Draws so many points and finds out; none if it was stopped.
+impl GroundTruth {
+    /// Draws this many points and finds the answers; none if it was stopped.
     pub fn find(workload: &Workload, count: usize, budget: &Budget) -> Option<Self> {
-        budget.task("what is true");
-        let mut places = draw(workload, count);
-        let (mut open, buried) = sky(workload, &places, budget)?;
+        budget.task("the exact answers");
+        let mut points = draw(workload, count);
+        let (mut ambient, buried) = sky(workload, &points, budget)?;
         let mut keep = buried.iter().map(|is_buried| !is_buried);
-        places.retain(|_| keep.next().unwrap_or(true));
+        points.retain(|_| keep.next().unwrap_or(true));
         let mut keep = buried.iter().map(|is_buried| !is_buried);
-        open.retain(|_| keep.next().unwrap_or(true));
-        let sun = sun(workload, &places, budget)?;
-        Some(Self { places, sun, open, buried: buried.iter().filter(|is_buried| **is_buried).count() })
+        ambient.retain(|_| keep.next().unwrap_or(true));
+        let sun = sun(workload, &points, budget)?;
+        Some(Self { points, sun, ambient, buried: buried.iter().filter(|is_buried| **is_buried).count() })
     }
 }
 
@@ -89,7 +89,7 @@ fn draw(workload: &Workload, count: usize) -> Vec<SurfaceSample> {
     let mut place = |k: usize| {
         let target = (k as f64 + uniform(&mut state)) / count as f64 * sum;
         let triangle = below.partition_point(|&area| area <= target).min(below.len() - 1) as u32;
-        // Folded over the diagonal, a square is a triangle.
+        // A point of the unit square, folded over its diagonal into a triangle.
         let [u, v] = [uniform(&mut state), uniform(&mut state)];
         let barycentric = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
         let is_back = uniform(&mut state) < 0.5;
@@ -112,39 +112,39 @@ fn place_at(workload: &Workload, triangle: u32, barycentric: [f64; 2], is_back: 
     SurfaceSample { surface, barycentric, is_back: is_back && is_double_sided, start, shading_normal }
 }
 
-/// Openness of each point, and whether it lies inside a solid.
-fn sky(workload: &Workload, places: &[SurfaceSample], budget: &Budget) -> Option<(Vec<f32>, Vec<bool>)> {
+/// Ambient visibility of each point, and whether it lies inside a solid.
+fn sky(workload: &Workload, points: &[SurfaceSample], budget: &Budget) -> Option<(Vec<f32>, Vec<bool>)> {
     let point = |place: &SurfaceSample| AmbientPoint { surface: place.surface, shading_normal: place.shading_normal };
-    let points: Vec<AmbientPoint> = places.iter().map(point).collect();
-    let engine = workload.sky(RAYS, SEED);
-    let (runs, _) = workload.find_open(&engine, &points, budget)?;
+    let asked: Vec<AmbientPoint> = points.iter().map(point).collect();
+    let engine = workload.ambient_engine(RAYS, SEED);
+    let (runs, _) = workload.solve_ambient_at(&engine, &asked, budget)?;
     let buried = runs.iter().flat_map(|run| run.buried.iter().copied()).collect();
     let sides: Vec<[f32; 2]> = runs.iter().flat_map(sides).collect();
     Some((
-        places.iter().zip(sides).map(|(place, [front, back])| if place.is_back { back } else { front }).collect(),
+        points.iter().zip(sides).map(|(place, [front, back])| if place.is_back { back } else { front }).collect(),
         buried,
     ))
 }
 
-/// Of a run, what fronts and backs see; single-sided points have their front's for both.
+/// Ambient visibility of the fronts and backs of a run; single-sided points have their front's twice.
 pub(super) fn sides(run: &Estimates) -> Vec<[f32; 2]> {
-    let mut sides: Vec<[f32; 2]> = run.front.iter().map(|front| [front.open; 2]).collect();
-    run.back.iter().for_each(|(k, back)| sides[*k as usize][1] = back.open);
+    let mut sides: Vec<[f32; 2]> = run.front.iter().map(|front| [front.visibility; 2]).collect();
+    run.back.iter().for_each(|(k, back)| sides[*k as usize][1] = back.visibility);
     sides
 }
 
-/// Share of the disc that each point's side sees, at its moments.
-fn sun(workload: &Workload, places: &[SurfaceSample], budget: &Budget) -> Option<Vec<Vec<f32>>> {
+/// Visible share of the disc for each point's side, at its moments.
+fn sun(workload: &Workload, points: &[SurfaceSample], budget: &Budget) -> Option<Vec<Vec<f32>>> {
     let (lanes, paths) = workload.lanes(LANES);
     let engine = ExactEngine::new(&workload.tracer, &paths);
-    let points: Vec<SurfacePoint> = places.iter().map(|place| place.surface).collect();
-    let (answers, _) = workload.solve_visibility(&engine, &points, budget)?;
+    let surfaces: Vec<SurfacePoint> = points.iter().map(|place| place.surface).collect();
+    let (answers, _) = workload.solve_visibility(&engine, &surfaces, budget)?;
     let of_place =
         |(place, answers): (&SurfaceSample, &[Intervals])| of_side(place, answers, &lanes, &paths, workload.path());
-    Some(workload.on_threads(|| places.par_iter().zip(answers.par_chunks(lanes.len())).map(of_place).collect()))
+    Some(workload.on_threads(|| points.par_iter().zip(answers.par_chunks(lanes.len())).map(of_place).collect()))
 }
 
-/// Of a two-sided surface a list says when either side is lit; a side is only while the sun stands before it.
+/// For a double-sided surface the list tells when either side is lit; a side is lit only while the sun is in front of it.
 fn of_side(
     place: &SurfaceSample,
     answers: &[Intervals],
@@ -153,8 +153,8 @@ fn of_side(
     path: &SunPath,
 ) -> Vec<f32> {
     if !place.surface.is_double_sided {
-        return metric::of_disc(answers, lanes, path, place.start);
+        return metric::disc_visibility(answers, lanes, path, place.start);
     }
     let before = answers.iter().zip(paths).map(|(lit, path)| lit.intersection(&path.above_plane(place.face())));
-    metric::of_disc(&before.collect::<Vec<_>>(), lanes, path, place.start)
+    metric::disc_visibility(&before.collect::<Vec<_>>(), lanes, path, place.start)
 }

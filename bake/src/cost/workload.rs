@@ -1,7 +1,7 @@
-//! The scene that is measured, ready to be asked: its hierarchy, its sun, and a page of texels.
+//! The scene that is measured, with its hierarchy, its sun, and a page of texels.
 
 use super::budget::Budget;
-use super::load::Load;
+use super::cpu_share::CpuShare;
 use super::{CostError, CostSettings};
 use crate::BakeError;
 use crate::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimates, solve_ambient};
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
-/// A scene with all that is made of it once.
+/// A scene with everything that is built from it once.
 pub(super) struct Workload {
     /// Where it was read from.
     pub scene_file: PathBuf,
@@ -30,27 +30,27 @@ pub(super) struct Workload {
     pub tracer: Tracer,
     normals: ShadingNormals,
     pool: rayon::ThreadPool,
-    /// The page on which knobs are turned.
-    pub page: Page,
-    /// Seconds that every bake takes before its first texel: reading, unwrapping, building the hierarchy.
+    /// The page whose texels the sweeps sample.
+    pub page: MeasuredPage,
+    /// Seconds of every bake before its first texel: reading, unwrapping, building the hierarchy.
     pub fixed_s: f64,
     warnings: Vec<Warning>,
-    load: Mutex<Load>,
+    cpu_share: Mutex<CpuShare>,
 }
 
-/// A page laid out as a bake would; or several, where a scene does not fit one.
-pub(super) struct Page {
-    /// Texels, whether or not they stand for a point.
+/// A page laid out as by a bake; or several, where a scene does not fit one.
+pub(super) struct MeasuredPage {
+    /// Texels, covered or not.
     pub texel_count: u64,
-    /// What its edge was asked to be.
+    /// Edge as asked for.
     pub edge_texels: u32,
-    /// Texels that stand for a point, neighbours together.
+    /// Covered texels, neighbours together.
     pub samples: Vec<Sample>,
 }
 
 impl Workload {
     pub fn new(scene_file: &Path, settings: &CostSettings, budget: &Budget) -> Result<Self, CostError> {
-        budget.task("getting ready");
+        budget.task("reading the scene and laying it out");
         let started = Instant::now();
         let asked =
             BakeSettings { page_size_texels: settings.page_size_texels, ..settings.preset(BakeSettings::standard) };
@@ -68,7 +68,7 @@ impl Workload {
             return Err(CostError::NoSurface);
         }
         let samples = pool.install(|| neighbours(&prepared.scene, &geometry, &atlas));
-        let page = Page { texel_count: atlas.texel_count(), edge_texels: asked.page_size_texels, samples };
+        let page = MeasuredPage { texel_count: atlas.texel_count(), edge_texels: asked.page_size_texels, samples };
         let normals = ShadingNormals::new(&prepared.scene);
         let scene_file = scene_file.to_owned();
         Ok(Self {
@@ -81,7 +81,7 @@ impl Workload {
             page,
             fixed_s,
             warnings,
-            load: Mutex::default(),
+            cpu_share: Mutex::default(),
             prepared,
         })
     }
@@ -98,27 +98,27 @@ impl Workload {
         &self.warnings
     }
 
-    /// Runs on as many threads as are asked for.
+    /// Runs `work` on the threads that were asked for.
     pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.pool.install(work)
     }
 
-    /// The same, with an eye on how much of the cores' time they get.
-    fn watched<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        let before = Load::now();
+    /// The same, and adds up the share of the cores' time that the threads get.
+    fn with_cpu_share<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        let before = CpuShare::now();
         let value = self.on_threads(work);
-        if let Ok(mut load) = self.load.lock() {
-            load.add(&before, &Load::now());
+        if let Ok(mut share) = self.cpu_share.lock() {
+            share.add(&before, &CpuShare::now());
         }
         value
     }
 
-    /// Share of its threads' time that this process got while all of them worked, if the system tells.
+    /// Share of its threads' time that this process got while all of them worked, 0 to 1; none where the system does not tell.
     pub fn cores_share(&self) -> Option<f64> {
-        self.load.lock().ok()?.share(self.pool.current_num_threads())
+        self.cpu_share.lock().ok()?.share(self.pool.current_num_threads())
     }
 
-    /// So many lanes across the disc, and the path of each. A light without width has one.
+    /// This many lanes across the disc, and the path of each. A light without width has one lane.
     pub fn lanes(&self, count: usize) -> (Vec<Lane>, Vec<SunPath>) {
         let count = if self.path.angular_radius_rad > 0.0 { count } else { 1 };
         let lanes = Lane::across_disc(count, self.path.angular_radius_rad);
@@ -131,19 +131,19 @@ impl Workload {
         atlas::surface_point(self.scene(), &self.geometry, sample)
     }
 
-    /// The normal that a surface is meant to have at a point of a triangle.
+    /// Unit shading normal at a point of a triangle, on its front.
     pub fn shading_normal(&self, triangle: u32, barycentric: [f64; 2]) -> DVec3 {
         self.normals.at(self.scene(), &self.geometry, triangle as usize, barycentric)
     }
 
-    /// Who answers about the sky.
-    pub fn sky(&self, rays: u32, seed: u32) -> AmbientEngine<'_> {
+    /// The engine for ambient visibility, with this many rays a point.
+    pub fn ambient_engine(&self, rays: u32, seed: u32) -> AmbientEngine<'_> {
         let settings =
             AmbientSettings { rays, distance_m: None, error: None, wants_bent: false, wants_sky: false, seed };
         self.on_threads(|| AmbientEngine::new(self.scene(), &self.geometry, &self.tracer, settings))
     }
 
-    /// When points see the sun: of each point an answer a lane, and the seconds it took. None if it was stopped.
+    /// Lit intervals of points, for each point one list a lane, and the seconds it took. None if it was stopped.
     pub fn solve_visibility(
         &self,
         engine: &dyn Engine,
@@ -152,17 +152,17 @@ impl Workload {
     ) -> Option<(Vec<Intervals>, f64)> {
         budget.start(BakeStage::Visibility, points.len() as u64);
         let started = Instant::now();
-        let told = |count: usize| {
+        let on_progress = |count: usize| {
             budget.advance(count as u64);
             !budget.is_cancelled()
         };
-        let (tables, _) = self.watched(|| solve_visibility(engine, points.len(), |i| points[i], told))?;
+        let (tables, _) = self.with_cpu_share(|| solve_visibility(engine, points.len(), |i| points[i], on_progress))?;
         let seconds = started.elapsed().as_secs_f64();
         Some((tables.iter().flat_map(|table| table.iter()).collect(), seconds))
     }
 
-    /// How much of the sky points see, run by run, and the seconds it took. None if it was stopped.
-    pub fn find_open(
+    /// Ambient light of points, run by run, and the seconds it took. None if it was stopped.
+    pub fn solve_ambient_at(
         &self,
         engine: &AmbientEngine,
         points: &[AmbientPoint],
@@ -170,17 +170,17 @@ impl Workload {
     ) -> Option<(Vec<Estimates>, f64)> {
         budget.start(BakeStage::Ambient, points.len() as u64);
         let started = Instant::now();
-        let told = |count: usize| {
+        let on_progress = |count: usize| {
             budget.advance(count as u64);
             !budget.is_cancelled()
         };
         let texel = |i: usize, to: &mut Vec<AmbientPoint>| to.push(points[i]);
-        let runs = self.watched(|| solve_ambient(engine, points.len(), texel, told))?;
+        let runs = self.with_cpu_share(|| solve_ambient(engine, points.len(), texel, on_progress))?;
         Some((runs, started.elapsed().as_secs_f64()))
     }
 }
 
-/// Samples of all pages, what lies side by side on a surface one after the other.
+/// Samples of all pages, neighbours on a surface one after the other.
 fn neighbours(scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> Vec<Sample> {
     let of_page = |(page, &size)| {
         let samples = atlas::sample_page(scene, geometry, atlas, page as u32);

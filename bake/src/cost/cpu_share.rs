@@ -1,28 +1,28 @@
-//! How much of the cores' time this process gets: seconds on a crowded machine are not those of an idle one.
+//! Share of the cores' time that this process gets. On a busy machine, measured seconds are longer than on an idle one.
 
 use std::time::Instant;
 
-/// Ticks a second in which Linux counts the time of processes, on all of its architectures.
+/// Clock ticks a second in which Linux counts process times, on all architectures.
 const TICKS_PER_SECOND: f64 = 100.0;
-/// Seconds below which ticks are too coarse to say anything.
+/// Seconds below which clock ticks are too coarse.
 const LEAST_S: f64 = 0.1;
 
-/// Seconds by the clock, and those that this process has run in, of all its threads.
+/// Wall-clock seconds, and the seconds that all threads of this process ran.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Load {
+pub(super) struct CpuShare {
     clock: Option<Instant>,
     clock_s: f64,
     run_s: Option<f64>,
 }
 
-impl Load {
-    /// As it stands.
+impl CpuShare {
+    /// Both counts at this moment.
     pub fn now() -> Self {
         let run_s = std::fs::read_to_string("/proc/self/stat").ok().and_then(|text| run_s(&text));
         Self { clock: Some(Instant::now()), clock_s: 0.0, run_s }
     }
 
-    /// Adds what lies between two of them, if it is long enough.
+    /// Adds the time between two moments, if it is long enough.
     pub fn add(&mut self, from: &Self, to: &Self) {
         let Some(clock_s) = to.clock.zip(from.clock).map(|(to, from)| (to - from).as_secs_f64()) else { return };
         if let (Some(from), Some(to)) = (from.run_s, to.run_s.filter(|_| clock_s >= LEAST_S)) {
@@ -31,7 +31,7 @@ impl Load {
         }
     }
 
-    /// Share of so many threads' time.
+    /// Share of this many threads' time, 0 to 1; none where the system does not tell.
     pub fn share(&self, threads: usize) -> Option<f64> {
         let share = self.run_s? / (self.clock_s * threads.max(1) as f64);
         Some(share.clamp(0.0, 1.0)).filter(|share| share.is_finite())
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn a_share_is_of_all_threads() {
-        let load = Load { clock: None, clock_s: 10.0, run_s: Some(10.0) };
-        assert_eq!([load.share(1), load.share(2), Load::default().share(2)], [Some(1.0), Some(0.5), None]);
+        let used = CpuShare { clock: None, clock_s: 10.0, run_s: Some(10.0) };
+        assert_eq!([used.share(1), used.share(2), CpuShare::default().share(2)], [Some(1.0), Some(0.5), None]);
     }
 }
