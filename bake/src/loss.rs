@@ -1,4 +1,4 @@
-//! What storing lost, texel by texel, gathered into the manifest's `error`.
+//! What storing lost, texel by texel, summarised for the manifest's `error`.
 
 use crate::disk::manifest::{ErrorEntry, LossEntry};
 use crate::maps::EncodeLoss;
@@ -6,7 +6,7 @@ use crate::statistics::percentile;
 
 /// Losses of every covered texel so far.
 #[derive(Debug, Default)]
-pub struct LossTally {
+pub struct LossStatistics {
     quantised_t: Distribution,
     merged_t: Distribution,
     merged_texels: u64,
@@ -20,7 +20,7 @@ struct Distribution {
     worst_at: Option<[u32; 3]>,
 }
 
-impl LossTally {
+impl LossStatistics {
     /// Counts a texel, at `[page, x, y]`.
     pub fn add(&mut self, loss: EncodeLoss, at: [u32; 3]) {
         self.quantised_t.add(loss.quantised_t, at);
@@ -65,11 +65,11 @@ mod tests {
 
     #[test]
     fn mean_percentile_and_worst_are_those_of_the_list() {
-        let mut tally = LossTally::default();
+        let mut statistics = LossStatistics::default();
         for i in 1..=200u32 {
-            tally.add(EncodeLoss { quantised_t: f64::from(i) / 1000.0, ..EncodeLoss::default() }, [0, i, 7]);
+            statistics.add(EncodeLoss { quantised_t: f64::from(i) / 1000.0, ..EncodeLoss::default() }, [0, i, 7]);
         }
-        let entry = tally.finish(1000.0).quantisation_min;
+        let entry = statistics.finish(1000.0).quantisation_min;
         assert!((entry.mean - 100.5).abs() < 1e-9);
         assert!((entry.p99 - 198.0).abs() < 1e-4);
         assert!((entry.worst - 200.0).abs() < 1e-4);
@@ -78,6 +78,6 @@ mod tests {
 
     #[test]
     fn nothing_baked_lost_nothing() {
-        assert_eq!(LossTally::default().finish(600.0), ErrorEntry::default());
+        assert_eq!(LossStatistics::default().finish(600.0), ErrorEntry::default());
     }
 }

@@ -29,7 +29,7 @@ impl LossMap {
 
     /// Adds what a texel lost of a light, on a path of this many minutes.
     pub fn add(&mut self, texel: usize, loss: &EncodeLoss, duration_min: f64) {
-        // By way of f32, as the tally in the manifest goes, so that both hold the same numbers.
+        // Rounded to f32, as the statistics in the manifest are, so that both hold the same numbers.
         let minutes = |t: f64| (f64::from(t as f32) * duration_min) as f32;
         let [layers, bits] = self.minutes[texel].map(|before| if before.is_nan() { 0.0 } else { before });
         self.minutes[texel] = [layers + minutes(loss.cap.total_t()), bits + minutes(loss.quantised_t)];

@@ -1,109 +1,88 @@
 //! Ambient light of a bake's pages.
 
+use super::error::BakeError;
+use super::light::{AmbientAccount, AmbientJob};
 use super::pages::PageBaker;
-use super::{BakeError, check_cancelled, timed};
-use crate::ambient::{
-    AmbientEngine, AmbientPage, AmbientPoint, Mismatch, Seams, ambient_visibility_of_vertices, solve_ambient,
-};
+use super::timing::{check_cancelled, timed};
+use crate::ambient::{AmbientPage, AmbientPoint, Mismatch, Seams, ambient_visibility_of_vertices, solve_ambient};
 use crate::atlas::{self, PageSamples, PageSize, Sample};
 use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
 use crate::disk::write::VERTICES_FILE;
 use crate::glb;
 use crate::progress::BakeStage;
-use crate::scene::ShadingNormals;
 use crate::settings::AmbientRequest;
 use crate::warning::Warning;
 
-/// What ambient light is baked with.
-#[derive(Clone, Copy)]
-pub(super) struct Sky<'a> {
-    pub engine: &'a AmbientEngine<'a>,
-    pub request: &'a AmbientRequest,
-    pub normals: &'a ShadingNormals,
-}
-
-/// What came of it so far, over all pages.
-#[derive(Debug, Default)]
-pub(super) struct SkyAccount {
-    pub rays: u64,
-    pub buried_texels: u64,
-    pub unsettled_texels: u64,
-    /// Points along the edge of a texel, where pages were too large for as many as were asked for.
-    pub supersample: Option<u32>,
-    /// Of each page and side, before and after they were healed.
-    pub seams: Vec<[Mismatch; 2]>,
-}
-
 impl PageBaker<'_> {
-    /// Bakes how much of the sky the texels of a page see, if that is asked for.
+    /// Bakes the ambient light of a page, if that is asked for.
     pub(super) fn bake_ambient(
         &mut self,
         page: usize,
         samples: &PageSamples,
         order: &[u32],
     ) -> Result<Option<AmbientPage>, BakeError> {
-        let Some(sky) = self.lights.sky else { return Ok(None) };
+        let Some(job) = self.lights.ambient else { return Ok(None) };
         self.progress.start(BakeStage::Ambient, samples.samples.len() as u64);
         let mut seconds = 0.0;
-        let baked = timed(&mut seconds, || self.bake_sky(&sky, page, samples, order));
+        let baked = timed(&mut seconds, || self.bake_page_ambient(&job, page, samples, order));
         self.stats.seconds.ambient += seconds;
         baked.map(Some)
     }
 
     /// Bakes ambient visibility of vertices into a scene of its own, if that is asked for.
     pub(super) fn bake_vertices(&mut self) -> Result<Option<(Vec<u8>, VertexEntry)>, BakeError> {
-        let Some((sky, attribute)) = self.lights.sky.and_then(|sky| Some((sky, sky.request.vertices?))) else {
+        let Some((job, attribute)) = self.lights.ambient.and_then(|job| Some((job, job.request.vertices?))) else {
             return Ok(None);
         };
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         progress.start(BakeStage::Ambient, 0);
         let find =
-            || ambient_visibility_of_vertices(sky.engine, scene, geometry, sky.normals, |_| !progress.is_cancelled());
+            || ambient_visibility_of_vertices(job.engine, scene, geometry, job.normals, |_| !progress.is_cancelled());
         let (open, rays) = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;
-        self.sky_account.rays += rays;
+        self.ambient_account.rays += rays;
         let glb = glb::write_vertices(scene, attribute, &open)?;
         Ok(Some((glb, VertexEntry { file: VERTICES_FILE.into(), attribute: attribute.name().into() })))
     }
 
-    fn bake_sky(
+    fn bake_page_ambient(
         &mut self,
-        sky: &Sky,
+        job: &AmbientJob,
         page: usize,
         samples: &PageSamples,
         order: &[u32],
     ) -> Result<AmbientPage, BakeError> {
         let (scene, geometry, atlas, progress) = (self.scene, self.geometry, self.atlas, self.progress);
         let size = atlas.pages[page];
-        let supersample = most_finer(size).min(sky.request.supersample);
-        if supersample < sky.request.supersample {
-            self.sky_account.supersample = Some(supersample);
+        let supersample = most_supersample(size).min(job.request.supersample);
+        if supersample < job.request.supersample {
+            self.ambient_account.supersample = Some(supersample);
         }
         let finer = FinerSamples::new(self, page, samples, supersample);
         let point = |sample: &Sample| {
             let weights = sample.barycentric.map(f64::from);
-            let shading_normal = sky.normals.at(scene, geometry, sample.triangle as usize, weights);
+            let shading_normal = job.normals.at(scene, geometry, sample.triangle as usize, weights);
             AmbientPoint { surface: atlas::surface_point(scene, geometry, sample), shading_normal }
         };
         let texel = |place: usize, points: &mut Vec<AmbientPoint>| match finer.of(order[place] as usize, samples) {
             [one] => points.push(point(one)),
-            several => sky.engine.add_visible(several.iter().map(point), points),
+            several => job.engine.add_visible(several.iter().map(point), points),
         };
-        let runs = solve_ambient(sky.engine, order.len(), texel, |count| {
+        let runs = solve_ambient(job.engine, order.len(), texel, |count| {
             progress.advance(count as u64);
             !progress.is_cancelled()
         })
         .ok_or(BakeError::Cancelled)?;
-        let account = &mut self.sky_account;
-        account.unsettled_texels += runs.iter().map(|run| run.unconverged).sum::<u64>();
+        let account = &mut self.ambient_account;
+        account.unconverged_texels += runs.iter().map(|run| run.unconverged).sum::<u64>();
         account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
         account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
-        let mut baked = AmbientPage::new(size, samples, order, &runs, sky.engine.settings());
+        let mut baked = AmbientPage::new(size, samples, order, &runs, job.engine.settings());
         drop(runs);
         baked.fill(&atlas::gutter(size, samples, self.settings.padding_texels), samples);
-        let seams = Seams::find(scene, geometry, sky.normals, atlas, page as u32, samples);
+        let seams = Seams::find(scene, geometry, job.normals, atlas, page as u32, samples);
         check_cancelled(progress)?;
         for side in baked.sides_mut() {
-            self.sky_account.seams.push(seams.stitch(&mut side.visibility, [0.0, 1.0]));
+            self.ambient_account.seams.push(seams.stitch(&mut side.visibility, [0.0, 1.0]));
             for plane in side.bent.iter_mut().chain(&mut side.sky) {
                 seams.stitch(plane, [-1.0, 1.0]);
             }
@@ -112,8 +91,8 @@ impl PageBaker<'_> {
     }
 }
 
-/// How many times finer a page may be sampled: texels of the finer grid are counted in 32 bits.
-fn most_finer(size: PageSize) -> u32 {
+/// How many times finer a page can be sampled: texels of the finer grid are counted in 32 bits.
+fn most_supersample(size: PageSize) -> u32 {
     0x1_0000 / size.width.max(size.height)
 }
 
@@ -160,7 +139,7 @@ impl FinerSamples {
     }
 }
 
-/// What a caller should know of it.
+/// Warnings about ambient light.
 pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Warning> {
     let unsettled = (entry.unsettled_texels > 0).then(|| Warning::AmbientUnsettled {
         texels: entry.unsettled_texels,
@@ -171,8 +150,8 @@ pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Wa
     unsettled.into_iter().chain((used < asked).then_some(Warning::FewerPoints { asked, used })).collect()
 }
 
-/// What the manifest says of it.
-pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEntry {
+/// The manifest's entry.
+pub(super) fn entry(request: &AmbientRequest, account: &AmbientAccount) -> AmbientEntry {
     let counted = |seams: &Mismatch| (seams.points - seams.differing) as f64;
     let all: f64 = account.seams.iter().map(|[_, after]| counted(after)).sum();
     let mean =
@@ -186,7 +165,7 @@ pub(super) fn entry(request: &AmbientRequest, account: &SkyAccount) -> AmbientEn
         bits: request.bits.count(),
         rays_traced: account.rays,
         buried_texels: account.buried_texels,
-        unsettled_texels: account.unsettled_texels,
+        unsettled_texels: account.unconverged_texels,
         seams: SeamEntry {
             points: account.seams.iter().map(|[_, after]| after.points).sum(),
             differing: account.seams.iter().map(|[_, after]| after.differing).sum(),

@@ -1,6 +1,6 @@
-//! A bake in memory, and what becomes of its pages: kept, or written one after the other.
+//! A bake in memory, and the two sinks of its pages: one keeps them, the other writes one after the other.
 
-use super::BakeError;
+use super::error::BakeError;
 use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, Manifest, StageSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
@@ -58,20 +58,20 @@ impl Bake {
         }
         let mut manifest = self.manifest.clone();
         manifest.stats.seconds.write += started.elapsed().as_secs_f64();
-        write_rest(writer, manifest, &self.scene_glb, self.vertices_glb.as_deref())
+        write_unpaged(writer, manifest, &self.scene_glb, self.vertices_glb.as_deref())
     }
 }
 
-/// What a bake makes beside its pages.
-pub(super) struct Rest {
+/// A bake without its pages.
+pub(super) struct UnpagedBake {
     pub manifest: Manifest,
     pub scene_glb: Vec<u8>,
     pub vertices_glb: Option<Vec<u8>>,
     pub warnings: Vec<Warning>,
 }
 
-/// Writes what a set has beside its pages and moves it into place. Gives the manifest as written.
-pub(super) fn write_rest(
+/// Writes everything of a set but its pages, and moves it into place. Gives the manifest as written.
+pub(super) fn write_unpaged(
     mut writer: SetWriter,
     manifest: Manifest,
     scene_glb: &[u8],

@@ -1,6 +1,6 @@
 //! What a bake writes into its manifest.
 
-use super::Prepared;
+use super::prepare::Prepared;
 use crate::atlas::Atlas;
 use crate::disk::manifest::{self, ArcEntry, ErrorEntry, InstanceEntry, LampEntry, Manifest, PathEntry, Stats};
 use crate::disk::write::SCENE_FILE;

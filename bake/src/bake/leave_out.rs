@@ -1,6 +1,6 @@
 //! Materials that the user leaves out: outline hulls, sky domes and the like, which no eye and no sunbeam should meet.
 
-use super::BakeError;
+use super::error::BakeError;
 use crate::scene::{Alpha, Scene};
 use crate::warning::Warning;
 

@@ -1,35 +1,68 @@
-//! A light of a bake, the sun or a lamp, and the account of what came of it.
+//! The lights of a bake (the sun, a lamp, the sky) and their statistics over all pages.
 
+use crate::ambient::{AmbientEngine, Mismatch};
 use crate::disk::manifest::{ErrorEntry, LampStats};
-use crate::loss::LossTally;
+use crate::loss::LossStatistics;
 use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder};
 use crate::progress::BakeStage;
-use crate::settings::BakeSettings;
+use crate::scene::ShadingNormals;
+use crate::settings::{AmbientRequest, BakeSettings};
 use crate::visibility::{Engine, Intervals, Work};
 
-/// Who answers when texels see a light.
+/// What a bake is lit by.
+#[derive(Clone, Copy)]
+pub(super) struct Lights<'a> {
+    /// None where the sun does not rise, or is not asked for.
+    pub sun: Option<LightJob<'a>>,
+    /// A lamp that moves through the scene.
+    pub lamp: Option<LightJob<'a>>,
+    /// Ambient light.
+    pub ambient: Option<AmbientJob<'a>>,
+}
+
+/// How ambient light is found.
+#[derive(Clone, Copy)]
+pub(super) struct AmbientJob<'a> {
+    pub engine: &'a AmbientEngine<'a>,
+    pub request: &'a AmbientRequest,
+    pub normals: &'a ShadingNormals,
+}
+
+/// Statistics of ambient light so far, over all pages.
+#[derive(Debug, Default)]
+pub(super) struct AmbientAccount {
+    pub rays: u64,
+    pub buried_texels: u64,
+    pub unconverged_texels: u64,
+    /// Points along the edge of a texel, where pages were too large for as many as were asked for.
+    pub supersample: Option<u32>,
+    /// Of each page and side, before and after its seams were stitched.
+    pub seams: Vec<[Mismatch; 2]>,
+}
+
+/// How the times of a light are found.
 #[derive(Clone, Copy)]
 pub(super) struct LightJob<'a> {
-    /// Answers for as many lanes as there are.
+    /// Finds the lit intervals along every lane.
     pub engine: &'a dyn Engine,
     /// The lanes across the disc; one for a lamp.
     pub lanes: &'a [Lane],
     /// Minutes of the path.
     pub duration_min: f64,
-    /// What to tell a listener while its intervals are found.
+    /// The stage that is reported while its intervals are found.
     pub stage: BakeStage,
 }
 
-/// What came of a light so far, over all pages.
+/// Statistics of the sun or a lamp so far, over all pages.
 #[derive(Default)]
-pub(super) struct Account {
+pub(super) struct LightAccount {
     pub work: Work,
     pub intervals: u64,
     pub dark_texels: u64,
     pub most_intervals: u64,
     /// Texels that one layer does not hold, along some lane.
     pub crowded_texels: u64,
-    pub loss: LossTally,
+    pub loss: LossStatistics,
 }
 
 /// The encoders of a page, one a lane.
@@ -46,7 +79,7 @@ impl LaneEncoders {
         &mut self,
         texel: usize,
         answers: &mut impl Iterator<Item = Intervals>,
-        account: &mut Account,
+        account: &mut LightAccount,
     ) -> EncodeLoss {
         let mut loss = EncodeLoss::default();
         let (mut found, mut most) = (0, 0);
@@ -73,7 +106,7 @@ impl LaneEncoders {
     }
 }
 
-impl Account {
+impl LightAccount {
     /// What the manifest says of a lamp.
     pub fn of_lamp(self, light: &LightJob) -> (LampStats, ErrorEntry) {
         let Self { work, intervals, dark_texels, most_intervals, loss, .. } = self;

@@ -1,9 +1,9 @@
-//! The pages of a bake, one after the other, so that only one is in memory.
+//! The pages of a bake, one after the other, each given to a sink.
 
-use super::ambient::{Sky, SkyAccount};
 use super::baked::PageSink;
-use super::light::{Account, LaneEncoders, LightJob};
-use super::{BakeError, check_cancelled, timed};
+use super::error::BakeError;
+use super::light::{AmbientAccount, LaneEncoders, LightAccount, LightJob, Lights};
+use super::timing::{check_cancelled, timed};
 use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
@@ -16,18 +16,7 @@ use crate::settings::BakeSettings;
 use crate::visibility::{self, IntervalTable, Work};
 use std::time::Instant;
 
-/// What a bake is lit by.
-#[derive(Clone, Copy)]
-pub(super) struct Lights<'a> {
-    /// None where the sun does not rise, or is not asked for.
-    pub sun: Option<LightJob<'a>>,
-    /// A lamp that moves through the scene.
-    pub lamp: Option<LightJob<'a>>,
-    /// Light from all around.
-    pub sky: Option<Sky<'a>>,
-}
-
-/// Bakes pages, and keeps the account.
+/// Bakes pages, and keeps the statistics.
 pub(super) struct PageBaker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) geometry: &'a Geometry,
@@ -36,12 +25,12 @@ pub(super) struct PageBaker<'a> {
     pub(super) lights: Lights<'a>,
     pub(super) progress: &'a dyn Progress,
     pub stats: Stats,
-    pub sun: Account,
-    pub lamp: Account,
-    pub sky_account: SkyAccount,
+    pub sun: LightAccount,
+    pub lamp: LightAccount,
+    pub ambient_account: AmbientAccount,
     /// The viewers' occlusion textures of the pages so far, if ambient light is baked.
     pub occlusion: Vec<OcclusionPage>,
-    /// Of the page at hand, if it was asked for.
+    /// The loss map of the current page, if it was asked for.
     loss_map: Option<LossMap>,
 }
 
@@ -64,7 +53,8 @@ impl<'a> PageBaker<'a> {
             seconds,
             ..Stats::default()
         };
-        let (sun, lamp, sky_account) = (Account::default(), Account::default(), SkyAccount::default());
+        let (sun, lamp, ambient_account) =
+            (LightAccount::default(), LightAccount::default(), AmbientAccount::default());
         let occlusion = Vec::new();
         Self {
             scene,
@@ -76,7 +66,7 @@ impl<'a> PageBaker<'a> {
             stats,
             sun,
             lamp,
-            sky_account,
+            ambient_account,
             occlusion,
             loss_map: None,
         }
@@ -127,7 +117,7 @@ impl<'a> PageBaker<'a> {
         &mut self,
         page: usize,
         light: &LightJob,
-        account: &mut Account,
+        account: &mut LightAccount,
         samples: &PageSamples,
         order: &[u32],
     ) -> Result<Vec<LaneMaps>, BakeError> {
@@ -136,7 +126,7 @@ impl<'a> PageBaker<'a> {
         Ok(self.encode(page, light, account, samples, order, &tables))
     }
 
-    /// Answers in the given order of samples.
+    /// Lit intervals, in the given order of samples.
     fn solve_visibility(
         &mut self,
         light: &LightJob,
@@ -158,7 +148,7 @@ impl<'a> PageBaker<'a> {
         &mut self,
         page: usize,
         light: &LightJob,
-        account: &mut Account,
+        account: &mut LightAccount,
         samples: &PageSamples,
         order: &[u32],
         tables: &[IntervalTable],

@@ -22,12 +22,14 @@
 mod advice;
 mod budget;
 mod cpu_share;
+mod error;
 mod html;
 mod knee;
 mod metric;
 mod playback;
 pub mod report;
 mod schedule;
+mod settings;
 mod sparse_bake;
 mod sweeps;
 #[cfg(test)]
@@ -35,81 +37,17 @@ mod tests;
 mod truth;
 mod workload;
 
+pub use error::CostError;
 pub use html::html;
 pub use report::CostReport;
+pub use settings::CostSettings;
 
-use crate::BakeError;
-use crate::disk::read::ReadError;
 use crate::progress::Progress;
 use crate::report::Machine;
-use crate::report::folder::FolderError;
-use crate::scene::LoadError;
-use crate::settings::{BakeSettings, SunRequest};
 use budget::Budget;
 use report::{MeasuredScene, MeasuredSun};
 use std::path::Path;
 use workload::Workload;
-
-/// What to measure, and how long that may take.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CostSettings {
-    /// Which sun.
-    pub sun: SunRequest,
-    /// Names of materials that are left out, see [`BakeSettings::leave_out`].
-    pub leave_out: Vec<String>,
-    /// Edge of the page whose texels the sweeps sample, 64 to 16384, usually that of the standard preset.
-    pub page_size_texels: u32,
-    /// Seconds that all measurements may take, 10 to 86400, usually 600. With more seconds, more is run.
-    pub budget_s: f64,
-    /// Threads, 0 for one a core.
-    pub threads: usize,
-    /// Memory that a bake may plan for; none: what its preset allows.
-    pub max_memory_bytes: Option<u64>,
-}
-
-/// Why costs were not measured. Nothing was left behind.
-#[derive(Debug, thiserror::Error)]
-pub enum CostError {
-    /// The scene cannot be read or baked.
-    #[error(transparent)]
-    Bake(#[from] BakeError),
-    /// A set that was just written cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// The scene of a set that was just written cannot be read.
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    /// The report cannot be written.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    /// There is no sun to measure with.
-    #[error("{0}, and costs are measured by the sun")]
-    NoSun(String),
-    /// There is nothing to measure.
-    #[error("the scene has no surface to bake, so there is nothing to measure")]
-    NoSurface,
-    /// A set's scene is not the scene that was baked.
-    #[error("triangle {triangle} of the baked scene lies {apart_m} m from where it was: this is a defect of sunbake")]
-    Moved {
-        /// Its index.
-        triangle: u32,
-        /// Distance that it moved.
-        apart_m: f64,
-    },
-}
-
-impl CostSettings {
-    /// A preset over this sun, with these limits.
-    fn preset(&self, of: fn(SunRequest) -> BakeSettings) -> BakeSettings {
-        let preset = of(self.sun.clone());
-        BakeSettings {
-            leave_out: self.leave_out.clone(),
-            threads: self.threads,
-            max_memory_bytes: self.max_memory_bytes.unwrap_or(preset.max_memory_bytes),
-            ..preset
-        }
-    }
-}
 
 /// Measures what accuracy costs on `scene_file`. Bakes go into `work_folder`, one at a time, and are removed again.
 pub fn cost(

@@ -1,7 +1,7 @@
 //! What a set shows at points of surfaces, evaluated as a runtime does: at four texels, then blended, and no more than the share of
 //! the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
 
-use super::CostError;
+use super::error::CostError;
 use super::metric;
 use super::truth::{GroundTruth, SurfaceSample};
 use crate::atlas::{Atlas, Footprint};

@@ -6,15 +6,16 @@
 //! is known, of the last bake.
 
 use super::budget::Budget;
+use super::error::CostError;
 use super::knee::knee;
 use super::metric::{MOMENTS, summary};
 use super::playback;
 use super::report::{CostReference, CostRow, How, Sweep};
+use super::settings::CostSettings;
 use super::sparse_bake::sparse_bake;
 use super::sweeps::{self, SweepPoint, TexelSweeps};
 use super::truth::{self, GroundTruth};
 use super::workload::Workload;
-use super::{CostError, CostSettings};
 use crate::disk::manifest::{Manifest, StageSeconds};
 use crate::disk::read;
 use crate::maps::Bits;

@@ -7,12 +7,12 @@
 //! the GPU are known, from the layers that these texels need.
 
 use super::budget::Budget;
-use super::playback::{self, PlaybackErrors, PlayedMaps};
+use super::playback::{self, PlaybackErrors, PlayedMaps, WeightedTexels};
 use super::truth::{self, GroundTruth};
 use super::workload::Workload;
 use crate::ambient::AmbientPoint;
 use crate::atlas::{self, Atlas, GutterTexel, PageSamples, Sample, SurfacePoint};
-use crate::bake::unwrap_somehow;
+use crate::bake::fitting_atlas;
 use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_share};
 use crate::progress::Progress;
 use crate::settings::{AmbientRequest, BakeSettings};
@@ -36,7 +36,7 @@ pub(super) fn sparse_bake(
     budget: &Budget,
 ) -> Result<Option<SparseBake>, BakeError> {
     let (mut warnings, scene) = (Vec::new(), workload.scene());
-    let laid_out = workload.on_threads(|| unwrap_somehow(scene, settings, &mut warnings, budget));
+    let laid_out = workload.on_threads(|| fitting_atlas(scene, settings, &mut warnings, budget));
     let (atlas, settings) = match laid_out {
         Ok(laid_out) => laid_out,
         Err(BakeError::Cancelled) => return Ok(None),

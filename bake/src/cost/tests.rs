@@ -3,9 +3,10 @@
 use super::budget::Budget;
 use super::metric::disc_visibility;
 use super::playback::{self, PlayedMaps, WeightedTexels};
+use super::settings::CostSettings;
+use super::sparse_bake::sparse_bake;
 use super::truth::{GroundTruth, SurfaceSample};
 use super::workload::Workload;
-use super::{CostSettings, sparse_bake::sparse_bake};
 use crate::atlas::{self, AtlasSettings, SurfacePoint};
 use crate::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::Silent;

@@ -2,11 +2,12 @@
 
 use super::budget::Budget;
 use super::cpu_share::CpuShare;
-use super::{CostError, CostSettings};
+use super::error::CostError;
+use super::settings::CostSettings;
 use crate::BakeError;
 use crate::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimates, solve_ambient};
 use crate::atlas::{self, Atlas, Sample, SurfacePoint};
-use crate::bake::{Prepared, prepare, unwrap_somehow};
+use crate::bake::{Prepared, fitting_atlas, prepare};
 use crate::maps::Lane;
 use crate::progress::{BakeStage, Progress};
 use crate::scene::{Geometry, Scene, ShadingNormals};
@@ -58,7 +59,7 @@ impl Workload {
         let prepared = prepare(scene_file, &asked, budget)?;
         let mut warnings = prepared.warnings.clone();
         let Some(path) = prepared.path.clone() else { return Err(no_sun(&prepared)) };
-        let (atlas, asked) = pool.install(|| unwrap_somehow(&prepared.scene, &asked, &mut warnings, budget))?;
+        let (atlas, asked) = pool.install(|| fitting_atlas(&prepared.scene, &asked, &mut warnings, budget))?;
         warnings.extend(atlas.warnings.iter().cloned());
         budget.start(BakeStage::Bvh, 0);
         let geometry = Geometry::new(&prepared.scene);
