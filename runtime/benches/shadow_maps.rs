@@ -1,16 +1,16 @@
 //! Shadow maps: cost and error of each variant and size: `cargo bench -p sunbake-runtime --bench
 //! shadow_maps`.
 //!
-//! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository), at times
-//! of day and through six cameras, two of them in shadow. Hard variants are compared with truth of the sun's centre, soft ones with
-//! truth of its disc.
+//! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository),
+//! at times of day and through six cameras, two of them in shadow. Hard variants are compared with truth of the sun's
+//! centre, soft ones with truth of its disc.
 //!
-//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. Under a moving sun every frame draws its
-//! maps; under a still one, maps that do not follow the view are kept. Sampling is the time of the lighting pass beyond that of the same
-//! pass without comparisons.
+//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. Under a moving sun every
+//! frame draws its maps; under a still one, maps that do not follow the view are kept. Sampling is the time of the
+//! lighting pass beyond that of the same pass without comparisons.
 //!
-//! Options after `--`: `size=128 times=12` (pictures compared), `px=512 rounds=3` (pictures timed, at three times through three
-//! cameras), `maps=512,1024,2048,4096 scene=NAME variant=NAME only=errors|times|bias map=2048 where=1`.
+//! Options after `--`: `size=128 times=12` (pictures compared), `px=512 rounds=3` (pictures timed, at three times
+//! through three cameras), `maps=512,1024,2048,4096 scene=NAME variant=NAME only=errors|times|bias map=2048 where=1`.
 
 #[path = "../../bake/benches/common/mod.rs"]
 mod common;
@@ -110,8 +110,8 @@ impl<'a> Frames<'a> {
         Self { stage, all: times.map(shots).collect(), rounds }
     }
 
-    /// Draws every frame several times, maps anew each time, with and without comparisons in turn; the least of each frame's times
-    /// counts.
+    /// Draws every frame several times, maps anew each time, with and without comparisons in turn; the least of each
+    /// frame's times counts.
     fn times(&self, gpu: &Gpu, settings: MapSettings) -> Times {
         let means = |sampling| Means { cache: false, sampling, ..Means::default() };
         let open = |sampling| {

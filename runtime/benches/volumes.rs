@@ -1,11 +1,13 @@
 //! Shadow volumes: the cost of each way of drawing them, and the gain of each saving: `cargo bench -p sunbake-runtime`.
 //!
-//! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository), at
-//! times of day and through cameras spread around, one of them in shadow. Alpha masks are left out, as volumes ignore them, so that
-//! errors are those of the technique. The ways take turns, so that other load of the machine falls on all alike.
+//! Our own scene and shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the repository),
+//! at times of day and through cameras spread around, one of them in shadow. Alpha masks are left out, as volumes
+//! ignore them, so that errors are those of the technique. The ways take turns, so that other load of the machine falls
+//! on all alike.
 //!
-//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. A *still* frame reuses the volumes of the
-//! last one; a *moving* frame computes its own. Wrong pixels are those that differ from hard truth, including those at edges.
+//! Passes are timed by the adapter's own clock; on a software GPU that is the CPU's time. A *still* frame reuses the
+//! volumes of the last one; a *moving* frame computes its own. Wrong pixels are those that differ from hard truth,
+//! including those at edges.
 //!
 //! Options after `--`: `size=256 times=3 rounds=3 scene=NAME only=ways|savings|suns`.
 
@@ -191,7 +193,8 @@ fn ways(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
         welded * 1e3
     );
     println!(
-        "| way | silhouettes (of which counting overlaps) | plan | volumes | depth and light | still frame | moving frame | triangles | filled Mpx | wrong | MiB |"
+        "| way | silhouettes (of which counting overlaps) | plan | volumes | depth and light | still frame \
+         | moving frame | triangles | filled Mpx | wrong | MiB |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
     let best = |of: fn(&Cost) -> f64| costs.iter().map(of).fold(f64::INFINITY, f64::min);

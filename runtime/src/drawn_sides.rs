@@ -1,9 +1,9 @@
 //! Which sides of each triangle are drawn.
 //!
-//! The front is drawn, and so is the back of a double-sided material. But where triangles share all three corners (blades of grass
-//! modelled from both sides, a part that was pasted twice), depths tie and a picture would speckle: on a GPU by rounding, on a CPU
-//! by the order in which the BVH is walked. So on each side of such a stack one triangle is drawn: the first whose front is there or,
-//! failing that, the first that is double-sided.
+//! The front is drawn, and so is the back of a double-sided material. But where triangles share all three corners
+//! (blades of grass modelled from both sides, a part that was pasted twice), depths tie and a picture would speckle: on
+//! a GPU by rounding, on a CPU by the order in which the BVH is walked. So on each side of such a stack one triangle is
+//! drawn: the first whose front is there or, failing that, the first that is double-sided.
 
 use glam::Vec3;
 use sunbake::scene::{Alpha, Geometry, Material, Scene};

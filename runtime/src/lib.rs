@@ -1,9 +1,9 @@
 //! Plays sunbake maps back, beside live shadow volumes and a ray-traced truth.
 //!
-//! A [`Stage`] is a baked set with its scene, or a scene alone, ready to be looked at. A [`Shot`] is the stage through a camera, a
-//! [`Moment`] is where the sun stands and what light that makes. A [`technique::Technique`] answers, for a shot at a
-//! moment, how much of the sun each pixel's surface sees; all answer with the same kind of image, so all are compared
-//! alike. A [`DrawPlan`] says what that calls for, and why. The modules read in that order:
+//! A [`Stage`] is a baked set with its scene, or a scene alone, ready to be looked at. A [`Shot`] is the stage through
+//! a camera, a [`Moment`] is where the sun stands and what light that makes. A [`technique::Technique`] answers, for a
+//! shot at a moment, how much of the sun each pixel's surface sees; all answer with the same kind of image, so all are
+//! compared alike. A [`DrawPlan`] says what that calls for, and why. The modules read in that order:
 //!
 //! ```text
 //! stage -> camera -> light -> technique (baked on the GPU | on the CPU | volumes | truth) -> shade -> image

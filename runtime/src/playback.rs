@@ -91,8 +91,8 @@ impl<'a> Page<'a> {
         Footprint::new(point.as_dvec2(), size)
     }
 
-    /// Visibility of the sun by the maps, 0 to 1, and no more than the share of its disc above the surface's plane. `face` is the unit
-    /// normal on the side that the eye is on.
+    /// Visibility of the sun by the maps, 0 to 1, and no more than the share of its disc above the surface's plane.
+    /// `face` is the unit normal on the side that the eye is on.
     pub fn sun_visibility(&self, page_uv: Vec2, face: Vec3, filter: Filter, moment: &Moment) -> f32 {
         if self.variant.layer_count() == 0 {
             return 0.0;
@@ -108,8 +108,8 @@ impl<'a> Page<'a> {
         disc_share.min(self.page_visibility(page_uv, filter, moment))
     }
 
-    /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its ball above the surface's plane; `way_m` leads
-    /// from the surface to the lamp. Twin of `lamp_baked.wgsl`.
+    /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its ball above the surface's plane;
+    /// `way_m` leads from the surface to the lamp. Twin of `lamp_baked.wgsl`.
     pub fn lamp_visibility(&self, page_uv: Vec2, face: Vec3, way_m: Vec3, filter: Filter, lamp: &LampMoment) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
         let ball_share = (0.5 + face.dot(way_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
@@ -120,8 +120,9 @@ impl<'a> Page<'a> {
         ball_share.min(self.filtered(page_uv, filter, seen))
     }
 
-    /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the surface.
-    /// Twin of `ambient_hemisphere.wgsl`, `ambient_occlusion.wgsl`, `ambient_bent.wgsl` and `ambient_sky.wgsl`.
+    /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the
+    /// surface. Twin of `ambient_hemisphere.wgsl`, `ambient_occlusion.wgsl`, `ambient_bent.wgsl` and
+    /// `ambient_sky.wgsl`.
     pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, sky: &AmbientSky) -> Vec3 {
         let light = sky.daylight;
         let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);

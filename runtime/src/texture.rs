@@ -1,5 +1,5 @@
-//! Base colour textures with mip levels, and their sampling on the CPU: the twin of a GPU's sampler with an sRGB texture and
-//! `textureSampleLevel`.
+//! Base colour textures with mip levels, and their sampling on the CPU: the twin of a GPU's sampler with an sRGB
+//! texture and `textureSampleLevel`.
 
 use glam::{Vec2, Vec4};
 use std::sync::LazyLock;
@@ -74,8 +74,8 @@ impl MipChain {
 }
 
 impl Level {
-    /// Half as wide and high, rounded down. None for a single texel. Colours are weighted by alpha, so that transparent texels do not
-    /// tint opaque ones.
+    /// Half as wide and high, rounded down. None for a single texel. Colours are weighted by alpha, so that transparent
+    /// texels do not tint opaque ones.
     fn halved(&self) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;

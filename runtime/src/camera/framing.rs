@@ -1,10 +1,11 @@
 //! A camera that shows a scene well: the file's first one or, if it has none, one that looks from above and aside.
 //!
-//! Points are sampled on the surfaces. Triangles are weighted by the square root of their area, up to a limit, so that one huge ground
-//! plane does not outweigh the town on it; the outermost few in a hundred are left out. Candidates look at the middle of the points
-//! from several bearings and elevations, each from as far away as it takes to have the points in the picture. The candidate that sees
-//! most points wins, with a preference for the south-east and an elevation of 25 degrees, so that the sun is behind the camera for most
-//! of the day. A camera inside a house or behind a hill sees next to nothing and loses.
+//! Points are sampled on the surfaces. Triangles are weighted by the square root of their area, up to a limit, so that
+//! one huge ground plane does not outweigh the town on it; the outermost few in a hundred are left out. Candidates look
+//! at the middle of the points from several bearings and elevations, each from as far away as it takes to have the
+//! points in the picture. The candidate that sees most points wins, with a preference for the south-east and an
+//! elevation of 25 degrees, so that the sun is behind the camera for most of the day. A camera inside a house or behind
+//! a hill sees next to nothing and loses.
 
 use super::Camera;
 use crate::stage::Stage;

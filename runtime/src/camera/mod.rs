@@ -1,5 +1,5 @@
-//! Cameras and views. Cameras are in bake space and in `f64`. What both the GPU and the ray tracer use of them (the eye, the rays) is
-//! rounded to `f32` once, here, so that both use the same rays.
+//! Cameras and views. Cameras are in bake space and in `f64`. What both the GPU and the ray tracer use of them (the
+//! eye, the rays) is rounded to `f32` once, here, so that both use the same rays.
 
 mod choice;
 pub(crate) mod framing;
@@ -50,8 +50,8 @@ impl Camera {
 
 /// A camera with the size of its picture.
 ///
-/// The ray through pixel coordinates (x, y), with pixel centres at halves, is `ray_first + ray_per_column x + ray_per_row y`. Its length
-/// along `forward` is 1.
+/// The ray through pixel coordinates (x, y), with pixel centres at halves, is `ray_first + ray_per_column x +
+/// ray_per_row y`. Its length along `forward` is 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// Width and height in pixels.
@@ -95,8 +95,8 @@ impl View {
         }
     }
 
-    /// The projection, with reversed and infinite depth: depth is near over distance, 1 at the near plane and 0 at infinity, so that
-    /// `f32` depths are as precise far away as close by.
+    /// The projection, with reversed and infinite depth: depth is near over distance, 1 at the near plane and 0 at
+    /// infinity, so that `f32` depths are as precise far away as close by.
     pub fn clip_from_eye(&self) -> Mat4 {
         let [x, y] = self.clip_rows;
         Mat4::from_cols(x.extend(0.0), y.extend(0.0), Vec4::new(0.0, 0.0, 0.0, self.near_m), self.forward.extend(0.0))

@@ -1,15 +1,15 @@
 //! Defects of shadow maps: errors that their resolution does not explain.
 //!
-//! A map stores one depth per texel. At every shadow's edge it may be wrong by a texel and by its filter's width, whatever the bias. An
-//! error elsewhere is a defect:
+//! A map stores one depth per texel. At every shadow's edge it may be wrong by a texel and by its filter's width,
+//! whatever the bias. An error elsewhere is a defect:
 //!
 //! * **Acne**: a fully lit surface with no shadow near it is drawn darker.
 //! * **Leak**: a surface in full shadow with no light near it is drawn lighter.
 //!
-//! *Near* is measured across the light, on the plane of the surface. A shadow is near if any solid triangle above that plane, however
-//! thin, comes within reach of the ray to the light. Light is near if one of many rays, spread over everything within reach, hits
-//! nothing. With soft light the reach grows along the ray by the disc's angle. Pixels that show another surface than a ray hits, or the
-//! end of a surface, are not counted.
+//! *Near* is measured across the light, on the plane of the surface. A shadow is near if any solid triangle above that
+//! plane, however thin, comes within reach of the ray to the light. Light is near if one of many rays, spread over
+//! everything within reach, hits nothing. With soft light the reach grows along the ray by the disc's angle. Pixels
+//! that show another surface than a ray hits, or the end of a surface, are not counted.
 
 use super::agreement::{EDGE_STEP, mean, neighbours, visibility_difference};
 use super::score::WRONG;
@@ -48,8 +48,9 @@ pub struct Defects {
 }
 
 impl Defects {
-    /// Compares a picture with truth. `depths_m` are the depths of the surfaces that the picture shows. `reach_m` is how far across the
-    /// light an edge may be from a point to explain an error there. `is_soft` says that truth is of the sun's disc, not of its centre.
+    /// Compares a picture with truth. `depths_m` are the depths of the surfaces that the picture shows. `reach_m` is
+    /// how far across the light an edge may be from a point to explain an error there. `is_soft` says that truth is of
+    /// the sun's disc, not of its centre.
     pub fn new(
         shot: &Shot,
         moment: &Moment,

@@ -1,8 +1,8 @@
 //! How two images of the same thing differ.
 //!
-//! A difference is a picture of its own, so that it can be looked at as well as summed. Two renderers may agree on every number and
-//! still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it lies. Pixels within one pixel of
-//! such an edge are therefore counted apart ([`edges`]).
+//! A difference is a picture of its own, so that it can be looked at as well as summed. Two renderers may agree on
+//! every number and still disagree on which triangle covers a pixel's centre, or on which side of a shadow's edge it
+//! lies. Pixels within one pixel of such an edge are therefore counted apart ([`edges`]).
 
 use crate::image::Raster;
 use crate::light::{codes_from_display, display_from_light};

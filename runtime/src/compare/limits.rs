@@ -86,8 +86,8 @@ impl FromStr for Limit {
 }
 
 impl Limit {
-    /// Which techniques are above it, and of which that is unknown: those left out, and those without a compared pixel. A limit that
-    /// no technique was checked against is not kept.
+    /// Which techniques are above it, and of which that is unknown: those left out, and those without a compared pixel.
+    /// A limit that no technique was checked against is not kept.
     pub fn check(&self, techniques: &[TechniqueEntry], left_out: &[LeftOut]) -> LimitEntry {
         let key = Limited::ALL.iter().find(|(_, what)| *what == self.what).map_or("", |(key, _)| key);
         let above = techniques.iter().filter_map(|technique| {

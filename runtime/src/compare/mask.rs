@@ -1,13 +1,13 @@
 //! How far a hard mask agrees with hard truth.
 //!
-//! Both test one point per pixel, and say lit or shaded. Where they differ, that is a defect, unless one of three things explains it
-//! that no rasterising technique can avoid. Each is counted apart:
+//! Both test one point per pixel, and say lit or shaded. Where they differ, that is a defect, unless one of three
+//! things explains it that no rasterising technique can avoid. Each is counted apart:
 //!
 //! * **The band.** The pixel lies within one pixel of an edge in truth's picture.
-//! * **Fine edges.** Truth itself changes within a fraction of a pixel ([`FINE_PX`]): at an edge of something too thin for the picture
-//!   to show, or between surfaces closer together than that along the line of sight.
-//! * **Other surfaces.** Rasterising shows another surface than a ray hits (at a silhouette, or through a crack between triangles that
-//!   do not share their corners), and the mask is right about that surface.
+//! * **Fine edges.** Truth itself changes within a fraction of a pixel ([`FINE_PX`]): at an edge of something too thin
+//!   for the picture to show, or between surfaces closer together than that along the line of sight.
+//! * **Other surfaces.** Rasterising shows another surface than a ray hits (at a silhouette, or through a crack between
+//!   triangles that do not share their corners), and the mask is right about that surface.
 
 use super::agreement::neighbours;
 use crate::image::Raster;
@@ -18,8 +18,8 @@ use crate::volumes::nearest::nearest;
 use glam::{DVec3, Vec3};
 use sunbake::trace::Hit;
 
-/// How far from a pixel's centre an edge may pass that no other pixel shows, in pixels. Rasterising moves corners by up to a
-/// 512th and volumes are moved by a 128th; slanted surfaces magnify both.
+/// How far from a pixel's centre an edge may pass that no other pixel shows, in pixels. Rasterising moves corners by up
+/// to a 512th and volumes are moved by a 128th; slanted surfaces magnify both.
 pub const FINE_PX: f32 = 0.25;
 /// How far towards the eye a surface may be moved for the same reason, in pixels.
 const FINE_DEPTH_PX: f64 = 1.0 / 32.0;
@@ -50,8 +50,8 @@ pub struct MaskAgreement {
 }
 
 impl MaskAgreement {
-    /// Compares a mask with hard truth. `depths_m` are the depths of the surfaces that the mask shows, along the camera's axis;
-    /// infinite without a surface.
+    /// Compares a mask with hard truth. `depths_m` are the depths of the surfaces that the mask shows, along the
+    /// camera's axis; infinite without a surface.
     pub fn new(
         shot: &Shot,
         moment: &Moment,
@@ -88,8 +88,8 @@ impl MaskAgreement {
     /// The numbers as a sentence.
     pub fn sentence(&self) -> String {
         format!(
-            "{} pixels compared, {} in the band ({} wrong there); elsewhere wrong: {} at fine edges, {} of other surfaces, {} \
-             unexplained",
+            "{} pixels compared, {} in the band ({} wrong there); elsewhere wrong: {} at fine edges, {} of other \
+             surfaces, {} unexplained",
             self.pixels,
             self.in_band,
             self.wrong_in_band,
@@ -128,7 +128,8 @@ impl Reasons<'_> {
         }))
     }
 
-    /// Whether truth equals the mask somewhere within a fraction of a pixel, or a fraction of a pixel before the surface.
+    /// Whether truth equals the mask somewhere within a fraction of a pixel, or a fraction of a pixel before the
+    /// surface.
     fn is_at_fine_edge(&self, pixel: usize, is_lit: bool) -> bool {
         let stage = self.shot.stage;
         let nearer = |ray: Vec3, hit: &Hit| {
@@ -142,8 +143,8 @@ impl Reasons<'_> {
         })
     }
 
-    /// Whether a pixel's ray to the light passes a caster by less than a fraction of a pixel. The caster's shadow may be too thin for
-    /// the circles to find. Casters at the surface itself do not count.
+    /// Whether a pixel's ray to the light passes a caster by less than a fraction of a pixel. The caster's shadow may
+    /// be too thin for the circles to find. Casters at the surface itself do not count.
     fn grazes_a_caster(&self, pixel: usize) -> bool {
         let stage = self.shot.stage;
         let Some(hit) = self.shot.hits()[pixel] else { return false };
@@ -165,8 +166,8 @@ impl Reasons<'_> {
         })
     }
 
-    /// Whether the mask is right about another surface at the depth that it shows, though a ray hits a different one first. Of a
-    /// surface seen edge on, rasterising may show either side.
+    /// Whether the mask is right about another surface at the depth that it shows, though a ray hits a different one
+    /// first. Of a surface seen edge on, rasterising may show either side.
     fn shows_other_surface(&self, pixel: usize, is_lit: bool, depth_m: f64) -> bool {
         let stage = self.shot.stage;
         if depth_m.is_infinite() {

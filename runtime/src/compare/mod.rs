@@ -6,8 +6,8 @@
 //! 2. `viewpoints` takes the cameras and times that are asked for, or finds cameras that see many shadow edges
 //!    (`shadow_edge_cameras`).
 //! 3. [`Comparison`] draws every frame with every technique and scores the pictures (`score`).
-//! 4. [`report`] is what is written: JSON by a schema, and a page. [`sheet`] is one picture of it. [`Limit`] checks the most that
-//!    was allowed.
+//! 4. [`report`] is what is written: JSON by a schema, and a page. [`sheet`] is one picture of it. [`Limit`] checks the
+//!    most that was allowed.
 //!
 //! `agreement`, `mask` and `acne_and_leaks` compare two pictures in finer ways, for tests and measurements.
 

@@ -8,7 +8,8 @@ use super::{BestPair, CompareError, CompareProgress, CompareSettings, Comparison
 use crate::gpu::Gpu;
 use crate::image::Raster;
 
-/// How often each frame is drawn, unless told: a software GPU's times say little of a real one's, however often they are taken.
+/// How often each frame is drawn, unless told: a software GPU's times say little of a real one's, however often they
+/// are taken.
 const ROUNDS: u32 = 3;
 const ROUNDS_ON_CPU: u32 = 1;
 
@@ -20,7 +21,8 @@ pub struct Compared {
     pub outcome: Outcome,
 }
 
-/// Compares techniques, as `settings` say. Without a GPU the CPU draws what it can, and the report names the rest as left out.
+/// Compares techniques, as `settings` say. Without a GPU the CPU draws what it can, and the report names the rest as
+/// left out.
 pub fn run(
     settings: &CompareSettings,
     gpu: Option<&Gpu>,

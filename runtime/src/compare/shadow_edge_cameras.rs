@@ -1,9 +1,10 @@
 //! Cameras that see many edges of shadows, since that is where techniques differ.
 //!
-//! Candidates are the file's own cameras, views of the whole scene from all around, and close views of the place with the most
-//! edges. Each candidate is drawn small by hard truth, at every time that is compared. An edge is where two neighbouring pixels show
-//! surfaces that meet, one in the sun and one not; silhouettes do not count. The camera with the most edges is taken first, and then,
-//! again and again, the one that sees most edges that no earlier camera has seen.
+//! Candidates are the file's own cameras, views of the whole scene from all around, and close views of the place with
+//! the most edges. Each candidate is drawn small by hard truth, at every time that is compared. An edge is where two
+//! neighbouring pixels show surfaces that meet, one in the sun and one not; silhouettes do not count. The camera with
+//! the most edges is taken first, and then, again and again, the one that sees most edges that no earlier camera has
+//! seen.
 
 use crate::camera::framing::{FOV_Y_DEG, detail, middle, standing_back, towards};
 use crate::camera::{Camera, View};
@@ -47,7 +48,8 @@ struct Trial {
     edges: Vec<(usize, DVec3)>,
 }
 
-/// As many cameras as asked for, or fewer if there are not so many candidates. `aspect` is the picture's width over its height.
+/// As many cameras as asked for, or fewer if there are not so many candidates. `aspect` is the picture's width over its
+/// height.
 pub fn shadow_edge_cameras(
     stage: &Stage,
     moments: &[Moment],

@@ -22,8 +22,8 @@ pub struct BestPair {
 }
 
 impl BestPair {
-    /// Best is whose lit pictures are most like the reference's by structural similarity, then whose mean error is least. None where
-    /// nothing baked was drawn, or nothing beside it.
+    /// Best is whose lit pictures are most like the reference's by structural similarity, then whose mean error is
+    /// least. None where nothing baked was drawn, or nothing beside it.
     pub fn of(techniques: &[TechniqueEntry]) -> Option<Self> {
         let best = |families: &[&str]| {
             let all = techniques.iter().enumerate().filter(|(_, one)| families.contains(&one.family.as_str()));
@@ -37,7 +37,8 @@ impl BestPair {
     }
 }
 
-/// Draws both techniques and their errors at times spread over the day, through the cameras in turn. `clocks` are the times' labels.
+/// Draws both techniques and their errors at times spread over the day, through the cameras in turn. `clocks` are the
+/// times' labels.
 pub fn sheet(title: &[String], outcome: &Outcome, pair: BestPair, clocks: &[String]) -> Raster<[u8; 3]> {
     let columns = columns(outcome, outcome.frames.len() / clocks.len().max(1));
     let small = |picture: Raster<[u8; 3]>| crate::sheet::thumbnail(&picture, PICTURE_WIDTH_PX);

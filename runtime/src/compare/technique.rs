@@ -1,8 +1,8 @@
 //! What can be compared, and what it is called.
 //!
-//! A name is parts with colons between them: `baked:16:lanes3:filtered`, `volumes`, `map:pcss`, `truth:hard`. A user may ask for a
-//! part of a name, which selects every technique that has those parts: `baked` is every way to play a set back, `baked:8` those with
-//! eight bits.
+//! A name is parts with colons between them: `baked:16:lanes3:filtered`, `volumes`, `map:pcss`, `truth:hard`. A user
+//! may ask for a part of a name, which selects every technique that has those parts: `baked` is every way to play a set
+//! back, `baked:8` those with eight bits.
 
 use crate::shadow_maps::Variant;
 use crate::technique::Truth;
@@ -54,7 +54,10 @@ impl Display for TechniqueSpec {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TechniqueNameError {
     /// No technique has it.
-    #[error("there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N", known.join(", "))]
+    #[error(
+        "there is no `{name}` here: give {}, a part of such a name as `baked:8`, volumes:MODE or truth:soft:N",
+        known.join(", ")
+    )]
     Unknown {
         /// The name.
         name: String,
@@ -132,8 +135,8 @@ impl TechniqueSpec {
     }
 }
 
-/// Those of `all` that have the parts of some name, in the order of `all`; then modes of volumes and soft truths that are asked for
-/// by their own names. Without names, all.
+/// Those of `all` that have the parts of some name, in the order of `all`; then modes of volumes and soft truths that
+/// are asked for by their own names. Without names, all.
 pub fn selected(all: &[TechniqueSpec], names: &[String]) -> Result<Vec<TechniqueSpec>, TechniqueNameError> {
     if names.is_empty() {
         return Ok(all.to_vec());

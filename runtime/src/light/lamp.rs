@@ -1,11 +1,12 @@
 //! A lamp at a moment: where it is, how bright it is, and which stretch of its path represents it.
 //!
-//! The lamp is a ball. It is represented by the stretch of its path within one radius of its centre, before and behind: its visibility
-//! is the lit share of the time in which the centre passes there. That window is the diameter over the speed, cut off at the path's
-//! start and end, and it follows the path's bends.
+//! The lamp is a ball. It is represented by the stretch of its path within one radius of its centre, before and behind:
+//! its visibility is the lit share of the time in which the centre passes there. That window is the diameter over the
+//! speed, cut off at the path's start and end, and it follows the path's bends.
 //!
-//! **Brightness.** Sets do not say how bright a lamp is, so it is as bright as makes a picture readable: at half the scene's half
-//! diagonal it lights a surface that faces it like the noon sun, and it falls off with the square of distance.
+//! **Brightness.** Sets do not say how bright a lamp is, so it is as bright as makes a picture readable: at half the
+//! scene's half diagonal it lights a surface that faces it like the noon sun, and it falls off with the square of
+//! distance.
 
 use glam::{DVec3, Vec3};
 use sunbake::lamp::LampPath;

@@ -1,12 +1,12 @@
 //! Light at a moment of the day: where the sun stands, and a simple sky to go with it.
 //!
-//! **Sun.** Its colour is what the air lets through: `exp(-depth * air mass)` for red, green and blue, the air mass after
-//! Kasten and Young ("Revised optical air mass tables and approximation formula", *Applied Optics* 28, 1989), the depths
-//! those of clear air with a little dust.
+//! **Sun.** Its colour is what the air lets through: `exp(-depth * air mass)` for red, green and blue, the air mass
+//! after Kasten and Young ("Revised optical air mass tables and approximation formula", *Applied Optics* 28, 1989), the
+//! depths those of clear air with a little dust.
 //!
-//! **Brightness.** Noon is some thousand times brighter than dusk. The eye adapts, a picture with a fixed exposure cannot. The sun's
-//! brightness is therefore compressed by a power (`ADAPTATION`), and all light is scaled up as the light on level ground falls
-//! (`EYE`), as if the eye had adapted in part.
+//! **Brightness.** Noon is some thousand times brighter than dusk. The eye adapts, a picture with a fixed exposure
+//! cannot. The sun's brightness is therefore compressed by a power (`ADAPTATION`), and all light is scaled up as the
+//! light on level ground falls (`EYE`), as if the eye had adapted in part.
 //!
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground reflects what it receives. None of this
 //! is measured. It gives the shadows a plausible light.

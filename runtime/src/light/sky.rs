@@ -34,8 +34,9 @@ impl Moment {
     /// Radiance of sky and ground in spherical harmonics up to degree two, for surfaces with baked sky visibility.
     ///
     /// Above the horizon these are the sky's colours without the sun's disc, scaled so that level ground receives
-    /// [`super::Daylight::sky_light`]. Below it is [`super::Daylight::ground_light`] from everywhere. An unoccluded surface that faces
-    /// up or down is therefore lit as by the hemisphere model; one that faces aside is brighter towards the sun.
+    /// [`super::Daylight::sky_light`]. Below it is [`super::Daylight::ground_light`] from everywhere. An unoccluded
+    /// surface that faces up or down is therefore lit as by the hemisphere model; one that faces aside is brighter
+    /// towards the sun.
     pub fn sky_harmonics(&self) -> [Vec3; harmonics::COUNT] {
         let mut above = [Vec3::ZERO; harmonics::COUNT];
         let mut below = [0.0f32; harmonics::COUNT];

@@ -1,7 +1,8 @@
 //! From linear light to a display's codes.
 //!
-//! The curve is a rational fit of a film's response, after Krzysztof Narkowicz ("ACES filmic tone mapping curve", 2016),
-//! scaled so that middle grey is kept. Very bright colours turn towards white, as on film, instead of clipping channel by channel.
+//! The curve is a rational fit of a film's response, after Krzysztof Narkowicz ("ACES filmic tone mapping curve",
+//! 2016), scaled so that middle grey is kept. Very bright colours turn towards white, as on film, instead of clipping
+//! channel by channel.
 
 use super::LUMINANCE;
 use crate::texture::srgb_from_linear;

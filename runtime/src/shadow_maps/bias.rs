@@ -1,19 +1,20 @@
 //! Bias: what keeps a surface from shading itself, in metres and texels.
 //!
-//! A texel of a map stores one depth for a small square across the light, and receivers anywhere in that square are compared with it.
-//! Four corrections make up for the difference; each is optional:
+//! A texel of a map stores one depth for a small square across the light, and receivers anywhere in that square are
+//! compared with it. Four corrections make up for the difference; each is optional:
 //!
 //! * **Constant**: receivers are moved along the light, by metres or by a share of a texel.
-//! * **Slope**: by as much as the receiver's plane rises from a texel's middle to its rim. Right for planes at any slant, but
-//!   unbounded as the slant grows: light leaks through casters that are nearer than that.
-//! * **Normal offset** (Holbert, "Saying goodbye to shadow acne", GDC 2011): receivers are moved along their normals, by the
-//!   distance of the texel's farthest corner from their plane: the same gap across the light, and never more than a texel.
-//! * **Receiver plane** (Isidoro, "Shadow mapping: GPU-based tips and techniques", GDC 2006): each texel is compared with the
-//!   receiver's plane at that texel, so that wide filters need no more bias than narrow ones. In
-//!   a concave corner that faces the light a plane continues behind the other wall, and the filter darkens both near the corner.
+//! * **Slope**: by as much as the receiver's plane rises from a texel's middle to its rim. Right for planes at any
+//!   slant, but unbounded as the slant grows: light leaks through casters that are nearer than that.
+//! * **Normal offset** (Holbert, "Saying goodbye to shadow acne", GDC 2011): receivers are moved along their normals,
+//!   by the distance of the texel's farthest corner from their plane: the same gap across the light, and never more
+//!   than a texel.
+//! * **Receiver plane** (Isidoro, "Shadow mapping: GPU-based tips and techniques", GDC 2006): each texel is compared
+//!   with the receiver's plane at that texel, so that wide filters need no more bias than narrow ones. In a concave
+//!   corner that faces the light a plane continues behind the other wall, and the filter darkens both near the corner.
 //!
-//! A small bias for rounding and for the raster's own grid is always added: a 128th of a texel, a 256th of a pixel, and some steps of
-//! `f32`.
+//! A small bias for rounding and for the raster's own grid is always added: a 128th of a texel, a 256th of a pixel, and
+//! some steps of `f32`.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -28,7 +29,8 @@ pub struct Bias {
     pub constant_texels: f64,
     /// A factor for the rise of the receiver's plane over a filter's reach. 0 is none, 1 is right for planes.
     pub slope: f64,
-    /// A factor for the distance of the corner of the filter's reach from the receiver's plane. 0 is none, 1 is right for planes.
+    /// A factor for the distance of the corner of the filter's reach from the receiver's plane. 0 is none, 1 is right
+    /// for planes.
     pub normal: f64,
     /// Whether texels are compared with the receiver's plane where they lie.
     pub has_plane: bool,
@@ -48,8 +50,8 @@ impl Bias {
 /// Why a bias cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{part}` is not a bias: give none alone, or each at most once constant:METRES (to 1000000), texels:N, slope[:N], normal[:N] \
-     and plane, N from 0 to 100, with commas between them"
+    "`{part}` is not a bias: give none alone, or each at most once constant:METRES (to 1000000), texels:N, slope[:N], \
+     normal[:N] and plane, N from 0 to 100, with commas between them"
 )]
 pub struct BiasError {
     part: String,

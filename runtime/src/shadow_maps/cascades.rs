@@ -1,13 +1,14 @@
-//! Cascades: the view is cut into slices by depth, and each has a map of its own (Engel, "Cascaded shadow maps", *ShaderX5*,
-//! 2006; Zhang and others, "Parallel-split shadow maps for large-scale virtual environments", VRCIA 2006).
+//! Cascades: the view is cut into slices by depth, and each has a map of its own (Engel, "Cascaded shadow maps",
+//! *ShaderX5*, 2006; Zhang and others, "Parallel-split shadow maps for large-scale virtual environments", VRCIA 2006).
 //!
-//! *Practical splits*: between equal slices and slices in equal ratio. Each map holds the bounding sphere of its slice and those
-//! before it, whose size does not change as the camera turns, and lies on a grid of its own texels, which does not move as the
-//! camera does (Valient, "Stable rendering of cascaded shadow maps", *ShaderX6*, 2008). So shadow edges do not shimmer.
+//! *Practical splits*: between equal slices and slices in equal ratio. Each map holds the bounding sphere of its slice
+//! and those before it, whose size does not change as the camera turns, and lies on a grid of its own texels, which
+//! does not move as the camera does (Valient, "Stable rendering of cascaded shadow maps", *ShaderX6*, 2008). So shadow
+//! edges do not shimmer.
 //!
-//! Nearest and farthest depth are those in any direction, rounded to quarters of an octave, so that splits rarely change. Where a slice's
-//! map would not be finer than one map of everything that can be in shadow, that one map replaces it and all slices beyond it. Seen from
-//! afar, cascades are one map.
+//! Nearest and farthest depth are those in any direction, rounded to quarters of an octave, so that splits rarely
+//! change. Where a slice's map would not be finer than one map of everything that can be in shadow, that one map
+//! replaces it and all slices beyond it. Seen from afar, cascades are one map.
 
 use super::extents::{Extents, Near, ShadowScene};
 use super::projection::{LightBounds, MapProjection};
@@ -15,7 +16,8 @@ use crate::View;
 
 /// Share of equal slices in practical splits; the rest is slices in equal ratio.
 const EQUAL: f64 = 0.12;
-/// Ratio of the farthest to the nearest depth above which that share falls: equal slices of a hundred kilometres are useless.
+/// Ratio of the farthest to the nearest depth above which that share falls: equal slices of a hundred kilometres are
+/// useless.
 const EQUAL_UP_TO: f64 = 16_384.0;
 /// Most octaves between the nearest and the farthest depth. Nearer surfaces belong to the first slice.
 const OCTAVES: f64 = 20.0;
@@ -42,8 +44,8 @@ pub fn depths_m(view: &View, scene: &ShadowScene) -> [f64; 2] {
     [((near_m.log2() * 4.0).floor() / 4.0).exp2(), far_m]
 }
 
-/// The bounding sphere of the view up to a depth: its middle along the camera's axis, and its radius. Starting a slice where the last one
-/// ends would gain next to nothing, and where two maps are blended both must hold the point.
+/// The bounding sphere of the view up to a depth: its middle along the camera's axis, and its radius. Starting a slice
+/// where the last one ends would gain next to nothing, and where two maps are blended both must hold the point.
 fn sphere(view: &View, to_m: f64) -> [f64; 2] {
     let corner = view.ray_first.as_dvec3();
     // Half a picture's diagonal, at a depth of one.
@@ -52,7 +54,8 @@ fn sphere(view: &View, to_m: f64) -> [f64; 2] {
     [middle_m, middle_m.max((to_m - middle_m).hypot(to_m * across))]
 }
 
-/// A view's maps, the finest first. Empty where nothing can be in shadow. `margin_texels` are kept around what each must hold.
+/// A view's maps, the finest first. Empty where nothing can be in shadow. `margin_texels` are kept around what each
+/// must hold.
 pub fn cascades(
     view: &View,
     extents: &Extents,

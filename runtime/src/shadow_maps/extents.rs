@@ -9,8 +9,8 @@ use rayon::prelude::*;
 /// How many points are sampled on drawn triangles.
 const SAMPLES: usize = 4096;
 
-/// Space above the highest receiver, as a share of all heights. It keeps every receiver's depth away from 0, also after the division by
-/// a perspective map's `w`.
+/// Space above the highest receiver, as a share of all heights. It keeps every receiver's depth away from 0, also after
+/// the division by a perspective map's `w`.
 pub const HEADROOM: f64 = 1.0 / 256.0;
 
 /// Casters and receivers of a stage, gathered once.
@@ -120,8 +120,8 @@ impl Extents {
         (!bounds.is_empty() && self.casters.high.z >= bounds.low.z).then_some(bounds)
     }
 
-    /// The height towards the sun where depths begin. It is a little above the highest receiver (or caster), since depth 0 is for casters
-    /// above that.
+    /// The height towards the sun where depths begin. It is a little above the highest receiver (or caster), since
+    /// depth 0 is for casters above that.
     pub fn high_m(&self, near: Near) -> f64 {
         let above_m = HEADROOM * self.receivers.size().z;
         match near {

@@ -1,7 +1,8 @@
-//! The ground: the lowest of the large level planes of a scene that are seen from above, and the triangles that lie in it.
+//! The ground: the lowest of the large level planes of a scene that are seen from above, and the triangles that lie in
+//! it.
 //!
-//! Two variants draw shadows on it alone. A ground with nothing below it casts no shadow, since every ray that it blocks would arrive
-//! from below. It is left out of every map then.
+//! Two variants draw shadows on it alone. A ground with nothing below it casts no shadow, since every ray that it
+//! blocks would arrive from below. It is left out of every map then.
 
 use crate::stage::Stage;
 use std::collections::BTreeMap;
@@ -10,7 +11,8 @@ use std::collections::BTreeMap;
 const LEVEL: f64 = 0.999_9;
 /// Least area of the ground, as a share of the largest level plane's area.
 const AS_LARGE: f64 = 0.25;
-/// Distance from a plane within which points count as lying in it, as a share of the scene's size: as far as rounding moves them.
+/// Distance from a plane within which points count as lying in it, as a share of the scene's size: as far as rounding
+/// moves them.
 const FLAT: f64 = 1e-6;
 
 /// The ground of a stage.
@@ -20,7 +22,8 @@ pub struct Ground {
     pub height_m: Option<f64>,
     /// For each triangle, whether it lies in the plane and is drawn from above. Empty without a plane.
     holds: Vec<bool>,
-    /// Height above which triangles cast on it, bake space. Triangles in the plane do not, on whichever side they are drawn.
+    /// Height above which triangles cast on it, bake space. Triangles in the plane do not, on whichever side they are
+    /// drawn.
     pub casts_from_m: f64,
     /// Whether the ground can shade something, because something is below it.
     pub casts: bool,
@@ -36,7 +39,8 @@ impl Ground {
             (up > LEVEL && sides.front) || (up < -LEVEL && sides.back)
         };
         let height_of = |i: usize| triangles[i].iter().map(|p| f64::from(p.y)).sum::<f64>() / 3.0;
-        // Planes are grouped by heights rounded to that distance. One plane may fall into two groups; the larger one wins.
+        // Planes are grouped by heights rounded to that distance. One plane may fall into two groups; the larger one
+        // wins.
         let mut areas: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
         for i in (0..triangles.len()).filter(|&i| is_level(i)) {
             let [a, b, c] = triangles[i].map(|p| p.as_dvec3());

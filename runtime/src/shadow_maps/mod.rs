@@ -1,5 +1,5 @@
-//! Shadow maps: depths as seen from the sun, with which the surfaces that the camera sees are compared (Williams, "Casting curved shadows
-//! on curved surfaces", SIGGRAPH 1978), and later variants.
+//! Shadow maps: depths as seen from the sun, with which the surfaces that the camera sees are compared (Williams,
+//! "Casting curved shadows on curved surfaces", SIGGRAPH 1978), and later variants.
 //!
 //! This module is geometry on the CPU, in `f64`; the passes are in [`crate::gpu`]. Read it in this order:
 //!
@@ -11,8 +11,8 @@
 //! bias         what keeps a surface from shading itself
 //! ```
 //!
-//! A map holds only what lies under some caster, seen along the light: a small house in a large desert gets all texels. Both sides of
-//! every solid triangle cast, as they do for rays. Points outside of every map are lit.
+//! A map holds only what lies under some caster, seen along the light: a small house in a large desert gets all texels.
+//! Both sides of every solid triangle cast, as they do for rays. Points outside of every map are lit.
 
 pub mod bias;
 pub mod cascades;
@@ -49,14 +49,16 @@ pub enum Variant {
     Pcf4,
     /// A filter as wide as the penumbra (Fernando, "Percentage-closer soft shadows", SIGGRAPH 2005).
     Pcss,
-    /// A map for each slice of the view, each filtered by sixteen comparisons: what needs no tuning, however large the scene.
+    /// A map for each slice of the view, each filtered by sixteen comparisons: what needs no tuning, however large the
+    /// scene.
     #[default]
     Cascades,
     /// A map in the space after the camera's projection (*GPU Gems* chapter 14).
     Perspective,
     /// The same, as faces of a cube around the sun.
     Cube,
-    /// On the ground a blurred picture of casters, without depth (*GPU Gems* chapter 11); elsewhere as [`Self::Compare`].
+    /// On the ground a blurred picture of casters, without depth (*GPU Gems* chapter 11); elsewhere as
+    /// [`Self::Compare`].
     Ground,
     /// Casters laid flat on the ground (Blinn, "Me and my (fake) shadow", 1988); no shadows elsewhere.
     Planar,
@@ -87,7 +89,8 @@ impl Variant {
         matches!(self, Self::Cascades | Self::Perspective | Self::Cube)
     }
 
-    /// How far its filter reaches from the point that is looked up, along either axis, in texels. The penumbra's own width is added.
+    /// How far its filter reaches from the point that is looked up, along either axis, in texels. The penumbra's own
+    /// width is added.
     pub fn reach_texels(self) -> f64 {
         match self {
             Self::Plain | Self::Planar => 0.5,
@@ -176,13 +179,14 @@ impl MapSettings {
         }
     }
 
-    /// Whether the shader gathers depths and filters them itself, each texel against the receiver's plane. Otherwise a sampler compares
-    /// (or, for [`Variant::Plain`], the shader).
+    /// Whether the shader gathers depths and filters them itself, each texel against the receiver's plane. Otherwise a
+    /// sampler compares (or, for [`Variant::Plain`], the shader).
     pub fn gathers(&self) -> bool {
         self.bias.has_plane && self.means.filtering && !matches!(self.variant, Variant::Plain | Variant::Planar)
     }
 
-    /// How far a shadow's edge may be displaced, in texels: the filter's reach, the receiver's offset, and rounding of casters to texels.
+    /// How far a shadow's edge may be displaced, in texels: the filter's reach, the receiver's offset, and rounding of
+    /// casters to texels.
     pub fn reach_texels(&self) -> f64 {
         let to_corner = std::f64::consts::SQRT_2;
         to_corner * (self.variant.reach_texels() + self.bias.normal + 0.5) + self.bias.constant_texels
@@ -241,8 +245,8 @@ impl MapSettings {
     }
 }
 
-/// How far across the light a shadow's edge may be displaced at a point, in metres: [`MapSettings::reach_texels`] on the maps that are
-/// looked up there. 0 where the point is on no map.
+/// How far across the light a shadow's edge may be displaced at a point, in metres: [`MapSettings::reach_texels`] on
+/// the maps that are looked up there. 0 where the point is on no map.
 pub fn reach_m(settings: &MapSettings, maps: &[MapProjection], point_m: DVec3) -> f64 {
     let holding = maps.iter().filter(|map| map.holds(point_m, 0.0));
     // Near its border a cascade is blended with the next.

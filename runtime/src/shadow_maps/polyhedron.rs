@@ -1,5 +1,5 @@
-//! A convex body as its faces, cut by planes one after the other (Sutherland and Hodgman, "Reentrant polygon clipping", *CACM*
-//! 17, 1974, face by face, and a new face where the plane cuts).
+//! A convex body as its faces, cut by planes one after the other (Sutherland and Hodgman, "Reentrant polygon clipping",
+//! *CACM* 17, 1974, face by face, and a new face where the plane cuts).
 
 use glam::{DVec3, DVec4, Vec4Swizzles};
 

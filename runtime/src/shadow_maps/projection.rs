@@ -1,12 +1,12 @@
 //! The projection from bake space to a map, as one homogeneous matrix in `f64`.
 //!
-//! The sun's rays are parallel, and a map sends each ray to one point. So the rows for x, y and w are constant along the light: every
-//! projection is a projective map of the plane across the light, and a depth. An orthographic map's w is one everywhere; a perspective
-//! map's w falls towards the eye. The depth's row is free. It is metres along the light, so that moving a receiver along the light shifts
-//! its depth, in either kind of map.
+//! The sun's rays are parallel, and a map sends each ray to one point. So the rows for x, y and w are constant along
+//! the light: every projection is a projective map of the plane across the light, and a depth. An orthographic map's w
+//! is one everywhere; a perspective map's w falls towards the eye. The depth's row is free. It is metres along the
+//! light, so that moving a receiver along the light shifts its depth, in either kind of map.
 //!
-//! Each matrix is relative to an origin of its own, which is rounded to `f32` first, so that vertex and fragment shaders subtract the
-//! same vector.
+//! Each matrix is relative to an origin of its own, which is rounded to `f32` first, so that vertex and fragment
+//! shaders subtract the same vector.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
 use sunbake_shaders::ShadowViewUniform;
@@ -85,14 +85,15 @@ pub struct MapProjection {
 }
 
 impl MapProjection {
-    /// A map whose rows are given as functionals of a point less `origin_m`: vectors of coefficients, the fourth constant.
+    /// A map whose rows are given as functionals of a point less `origin_m`: vectors of coefficients, the fourth
+    /// constant.
     pub fn new(axes: LightAxes, origin_m: DVec3, rows: [DVec4; 4], size_texels: u32) -> Self {
         let [x, y, z, w] = rows;
         Self { axes, origin_m, clip_from_point: DMat4::from_cols(x, y, z, w).transpose(), size_texels }
     }
 
-    /// An orthographic map of what lies within bounds, with `margin_texels` around them on every side. Depth is 0 at the top and 1
-    /// at the bottom. Bounds without extent are grown a little.
+    /// An orthographic map of what lies within bounds, with `margin_texels` around them on every side. Depth is 0 at
+    /// the top and 1 at the bottom. Bounds without extent are grown a little.
     pub fn orthographic(axes: LightAxes, bounds: &LightBounds, size_texels: u32, margin_texels: f64) -> Self {
         let least_m = (bounds.low.abs().max(bounds.high.abs()).max_element() * 1e-6).max(1e-9);
         let size_m = bounds.size().max(DVec3::splat(least_m));

@@ -29,8 +29,8 @@ pub(super) struct Warp {
 }
 
 impl Warp {
-    /// The warps of a virtual camera `back_m` behind the eye, one for each axis that is tried. `range_m` are the least and the greatest
-    /// depth in view.
+    /// The warps of a virtual camera `back_m` behind the eye, one for each axis that is tried. `range_m` are the least
+    /// and the greatest depth in view.
     pub fn around(view: &View, towards: DVec3, region: &Polyhedron, range_m: [f64; 2], back_m: f64) -> Vec<Self> {
         let rows = view.clip_from_eye().as_dmat4().transpose();
         let forward = view.forward.as_dvec3();
@@ -124,7 +124,8 @@ impl Warp {
             f64::from(request.size_texels) / (f64::from(request.size_texels) - 2.0 * request.margin_texels).max(1.0);
         let half = 0.5 * (high - low).max(DVec2::splat(1e-9)) * inner;
         let middle = 0.5 * (low + high);
-        // Heights towards the sun are relative to the eye. The top is that of everything drawn: a plane may rise out of view.
+        // Heights towards the sun are relative to the eye. The top is that of everything drawn: a plane may rise out of
+        // view.
         let top_m = request.extents.high_m(request.near) - self.towards.dot(self.eye_m);
         let depth = (-self.towards).extend(top_m);
         let deepest = corners.iter().map(|p| depth.dot(*p) / w.dot(*p)).fold(0.0, f64::max);

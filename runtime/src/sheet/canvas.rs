@@ -66,7 +66,8 @@ impl Canvas {
     }
 }
 
-/// A picture made smaller by a whole number, so that it is no wider than `width` pixels. Linear light is averaged, not sRGB codes.
+/// A picture made smaller by a whole number, so that it is no wider than `width` pixels. Linear light is averaged, not
+/// sRGB codes.
 pub fn thumbnail(picture: &Raster<[u8; 3]>, width: u32) -> Raster<[u8; 3]> {
     let shrink = picture.size[0].div_ceil(width.max(1)).min(picture.size[1]).max(1);
     let light = |code: &[u8; 3]| Vec3::from_array(code.map(linear_from_srgb));

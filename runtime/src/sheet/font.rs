@@ -1,5 +1,5 @@
-//! Letters of five by seven pixels, for labels: digits, Latin letters and the little punctuation that times, numbers and
-//! errors need. Other characters are drawn as a box.
+//! Letters of five by seven pixels, for labels: digits, Latin letters and the little punctuation that times, numbers
+//! and errors need. Other characters are drawn as a box.
 
 /// Width and height of a letter, in its own pixels. Letters stand one pixel apart.
 pub const CELL: [u32; 2] = [5, 7];

@@ -33,8 +33,8 @@ pub fn contact_sheet(pictures: &[(Raster<[u8; 3]>, String)], columns: u32) -> Ra
     canvas.finish()
 }
 
-/// A table of pictures: a name before each row, text over and under each column, and a legend for the colours of the last row. Tables
-/// with many columns are broken into bands of [`PictureTable::band`] columns, one under the other.
+/// A table of pictures: a name before each row, text over and under each column, and a legend for the colours of the
+/// last row. Tables with many columns are broken into bands of [`PictureTable::band`] columns, one under the other.
 pub struct PictureTable {
     /// Lines above everything; the first is larger.
     pub title: Vec<String>,

@@ -97,8 +97,9 @@ impl Stage {
         Moment::new(self.path.as_ref(), t).with_lamp(self.lamp_moment(t))
     }
 
-    /// The ray tracer of this scene. The first call builds it, on all threads. Make that call before a parallel loop that uses it: a
-    /// thread that waits for the build may take up another task of the loop, which waits for the same build.
+    /// The ray tracer of this scene. The first call builds it, on all threads. Make that call before a parallel loop
+    /// that uses it: a thread that waits for the build may take up another task of the loop, which waits for the same
+    /// build.
     pub fn tracer(&self) -> &Tracer {
         self.tracer.get_or_init(|| Tracer::new(&self.scene, &self.geometry))
     }
@@ -118,7 +119,8 @@ impl Stage {
         &self.scene.meshes[self.scene.instances[instance].mesh]
     }
 
-    /// The drawn sides of a triangle: neither if it has no texels, or shares its place with triangles that are drawn instead.
+    /// The drawn sides of a triangle: neither if it has no texels, or shares its place with triangles that are drawn
+    /// instead.
     pub fn sides(&self, triangle: usize) -> DrawnSides {
         self.sides[triangle]
     }
@@ -156,7 +158,8 @@ impl Stage {
         if normal == glam::DVec3::ZERO { front } else { normal.as_vec3() }
     }
 
-    /// Texels of the base colour texture per metre of a triangle: the square root of the ratio of the two areas. 0 without texture.
+    /// Texels of the base colour texture per metre of a triangle: the square root of the ratio of the two areas. 0
+    /// without texture.
     pub fn texels_per_metre(&self, triangle: usize, image_uv: [Vec2; 3]) -> f32 {
         let instance = self.geometry.instance[triangle] as usize;
         let Some(texture) = self.scene.material(instance).base_color_texture else { return 0.0 };

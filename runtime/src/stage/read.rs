@@ -23,7 +23,10 @@ pub enum StageError {
     #[error("the set's scene cannot be read: {0}")]
     Scene(#[from] LoadError),
     /// The set's scene is missing.
-    #[error("{file} is missing from the set (its SHA-256 was {}): put it back, or bake the scene again", sha256.as_deref().unwrap_or("not kept"))]
+    #[error(
+        "{file} is missing from the set (its SHA-256 was {}): put it back, or bake the scene again",
+        sha256.as_deref().unwrap_or("not kept")
+    )]
     NoScene {
         /// Where it was.
         file: String,

@@ -12,8 +12,8 @@ impl Stage {
         Self { lamp: lamp.map(|path| path.relative_to(self.scene.centre_m)), ..self }
     }
 
-    /// The same stage without the maps that a model of ambient light does not read, so that none of them is bound or uploaded. A model
-    /// that the maps do not allow falls back to the best that they do.
+    /// The same stage without the maps that a model of ambient light does not read, so that none of them is bound or
+    /// uploaded. A model that the maps do not allow falls back to the best that they do.
     pub fn with_ambient(mut self, model: AmbientModel) -> Self {
         for page in &mut self.pages {
             if model == AmbientModel::Hemisphere {
@@ -61,7 +61,8 @@ impl Stage {
         self
     }
 
-    /// The same stage without the times of sun and lamp, for techniques that compute shadows themselves. The lights' paths stay.
+    /// The same stage without the times of sun and lamp, for techniques that compute shadows themselves. The lights'
+    /// paths stay.
     pub fn without_times(mut self) -> Self {
         self.pages.iter_mut().for_each(|page| page.lamp = None);
         self.without_sun()

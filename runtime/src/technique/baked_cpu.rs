@@ -1,7 +1,7 @@
 //! Baked maps, evaluated on the CPU: the twin of [`super::BakedGpu`], used instead of it where there is no GPU.
 //!
-//! Each pixel takes one primary ray and one evaluation of the maps. Errors are those of the maps: the step of stored times, the size of
-//! a texel, and, with few lanes, taking the sun's disc for lines along its path.
+//! Each pixel takes one primary ray and one evaluation of the maps. Errors are those of the maps: the step of stored
+//! times, the size of a texel, and, with few lanes, taking the sun's disc for lines along its path.
 
 use super::{Technique, on_cpu};
 use crate::gpu::{GpuError, Output};

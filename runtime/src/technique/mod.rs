@@ -1,7 +1,7 @@
 //! Techniques: ways to find the visibility of the sun, or of a lamp, at each pixel.
 //!
-//! All give the same kind of image: visibility from 0 to 1, where pixels without a surface read 1. So all are compared alike. Each
-//! file says what its technique costs and where it is wrong.
+//! All give the same kind of image: visibility from 0 to 1, where pixels without a surface read 1. So all are compared
+//! alike. Each file says what its technique costs and where it is wrong.
 
 mod baked_cpu;
 mod baked_gpu;
@@ -60,7 +60,8 @@ pub trait Technique {
         FrameCost::default()
     }
 
-    /// The picture with the geometry of its shadows made visible (shadow volumes). None for techniques without such geometry.
+    /// The picture with the geometry of its shadows made visible (shadow volumes). None for techniques without such
+    /// geometry.
     fn shown(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
         Ok(None)
     }
@@ -75,8 +76,8 @@ pub trait Technique {
         serde_json::Value::Null
     }
 
-    /// Which effects a shot's pictures of one kind need. Where that depends on the view and the light, it is an upper bound before the
-    /// first such picture, and afterwards what the last one needed.
+    /// Which effects a shot's pictures of one kind need. Where that depends on the view and the light, it is an upper
+    /// bound before the first such picture, and afterwards what the last one needed.
     fn effects(&self, shot: &Shot, output: Output) -> DrawPlan;
 
     /// What was built on the GPU. None where the CPU draws.

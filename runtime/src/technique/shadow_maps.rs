@@ -1,8 +1,9 @@
 //! Shadow maps, live: depths as the sun sees them, with which each pixel's surface is compared.
 //!
-//! Passes: one for each map, unless the last frame's serve; depths; and one that lights. Targets: the maps, a picture and its
-//! depths. Wrong by the size of a texel at every edge, and where what casts is thinner than one; how far, and what each variant
-//! does about it, is in [`crate::shadow_maps::Variant`] and measured in `docs/measurements/shadow_maps.md`.
+//! Passes: one for each map, unless the last frame's serve; depths; and one that lights. Targets: the maps, a picture
+//! and its depths. Wrong by the size of a texel at every edge, and where what casts is thinner than one; how far, and
+//! what each variant does about it, is in [`crate::shadow_maps::Variant`] and measured in
+//! `docs/measurements/shadow_maps.md`.
 
 use super::{FrameCost, Technique};
 use crate::gpu::{Gpu, GpuError, MapRenderer, MapReport, Output};

@@ -1,15 +1,16 @@
 //! Truth: rays from the surface at every pixel to the sun, on the CPU.
 //!
 //! * *Hard* truth traces one ray to the sun's centre, and gives 0 or 1.
-//! * *Soft* truth traces many rays over the sun's disc, evenly by area (a spiral of golden angles after Vogel, "A better
-//!   way to construct the sunflower head", *Mathematical Biosciences* 44, 1979), turned by a different angle at each
-//!   pixel; it gives the share that reaches the sun. Only parts of the disc above the world's horizon and above the
-//!   surface's plane count.
+//! * *Soft* truth traces many rays over the sun's disc, evenly by area (a spiral of golden angles after Vogel, "A
+//!   better way to construct the sunflower head", *Mathematical Biosciences* 44, 1979), turned by a different angle at
+//!   each pixel; it gives the share that reaches the sun. Only parts of the disc above the world's horizon and above
+//!   the surface's plane count.
 //!
-//! For a lamp it is the same: one ray to its centre, or many over the disc that its ball shows to the point. A ray ends at the lamp.
+//! For a lamp it is the same: one ray to its centre, or many over the disc that its ball shows to the point. A ray ends
+//! at the lamp.
 //!
-//! The two are never mixed: a hard technique is compared with hard truth, a soft one with soft truth. Nothing is kept between frames.
-//! The error of soft truth is its sampling: with N rays a half-covered disc is right to about 1/N.
+//! The two are never mixed: a hard technique is compared with hard truth, a soft one with soft truth. Nothing is kept
+//! between frames. The error of soft truth is its sampling: with N rays a half-covered disc is right to about 1/N.
 
 use super::{Technique, on_cpu};
 use crate::gpu::{GpuError, Output};
@@ -61,8 +62,8 @@ impl Truth {
         }
     }
 
-    /// Visibility of the centre of the sun or of the lamp, 0 or 1, from the point that a ray has hit, moved back along the ray by
-    /// `step_m`.
+    /// Visibility of the centre of the sun or of the lamp, 0 or 1, from the point that a ray has hit, moved back along
+    /// the ray by `step_m`.
     pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: LightKind) -> f32 {
         let mut point = ShadowRayOrigin::new(stage, ray, hit);
         let back_m = ray.as_dvec3().normalize() * step_m;
@@ -200,7 +201,8 @@ struct Ball {
 }
 
 impl Ball {
-    /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the ball's disc as seen from a point.
+    /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the ball's disc as seen from a
+    /// point.
     fn point(&self, from_m: DVec3, i: u32, count: u32, turn: f64) -> DVec3 {
         let Some(way) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };
         let (across, up) = way.any_orthonormal_pair();
@@ -210,7 +212,8 @@ impl Ball {
     }
 }
 
-/// An angle that differs from pixel to pixel (a PCG hash: Jarzynski and Olano, "Hash functions for GPU rendering", 2020).
+/// An angle that differs from pixel to pixel (a PCG hash: Jarzynski and Olano, "Hash functions for GPU rendering",
+/// 2020).
 fn turn_of_pixel(pixel: usize) -> f64 {
     let state = (pixel as u32).wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
     let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);

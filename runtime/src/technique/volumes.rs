@@ -1,9 +1,10 @@
 //! Shadow volumes, live: what the sun's centre or the lamp's does not see is found anew for each moment.
 //!
-//! Passes: depth, what comes from all around, and for each light its volumes and what it adds. Targets: a picture, and its
-//! depths with a stencil. Kept: the casters' points, and the volumes of the last light. Exact for each pixel's centre, with
-//! hard edges; wrong where leaves are cut out of cards, whose whole cards cast, and where a shadow is shallower than a 64th of a
-//! pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies on it.
+//! Passes: depth, what comes from all around, and for each light its volumes and what it adds. Targets: a picture, and
+//! its depths with a stencil. Kept: the casters' points, and the volumes of the last light. Exact for each pixel's
+//! centre, with hard edges; wrong where leaves are cut out of cards, whose whole cards cast, and where a shadow is
+//! shallower than a 64th of a pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies
+//! on it.
 
 use super::{FrameCost, Technique};
 use crate::gpu::{FrameReport, Gpu, GpuError, Output, VolumeRenderer, VolumeSettings};

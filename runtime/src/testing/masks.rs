@@ -75,8 +75,8 @@ pub fn agreement(volumes: &mut Volumes, shot: &Shot, moment: &Moment, light: Lig
     MaskAgreement::new(shot, moment, light, &found, &truth, &depths_m)
 }
 
-/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit, and that it is right: no unexplained error
-/// outside of truth's edges, few explained ones, and few errors in the band.
+/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit, and that it is right: no
+/// unexplained error outside of truth's edges, few explained ones, and few errors in the band.
 pub fn assert_right(
     gpu: &Gpu,
     name: &str,
@@ -94,7 +94,8 @@ pub fn assert_right(
     all
 }
 
-/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit. Gives how far it agrees with truth.
+/// Asserts that every way of drawing a moment's volumes gives the same mask, bit for bit. Gives how far it agrees with
+/// truth.
 pub fn assert_ways_agree(
     gpu: &Gpu,
     name: &str,
@@ -108,8 +109,8 @@ pub fn assert_ways_agree(
     all
 }
 
-/// How far the planned way of drawing a moment's volumes agrees with truth, and which other ways differ from it, in how many
-/// pixels.
+/// How far the planned way of drawing a moment's volumes agrees with truth, and which other ways differ from it, in how
+/// many pixels.
 pub fn compare_ways(
     gpu: &Gpu,
     name: &str,
@@ -163,8 +164,8 @@ pub fn cameras_around(stage: &Stage) -> [Camera; 4] {
     })
 }
 
-/// A camera whose eye is in shadow, near a surface, and looks at another one: inside a shadow volume. `pick` chooses which.
-/// None where nothing is in shadow.
+/// A camera whose eye is in shadow, near a surface, and looks at another one: inside a shadow volume. `pick` chooses
+/// which. None where nothing is in shadow.
 pub fn camera_in_shadow(stage: &Stage, towards_light: DVec3, pick: usize) -> Option<Camera> {
     let count = stage.geometry.triangles.len();
     let direction = Direction::new(towards_light);

@@ -1,5 +1,5 @@
-//! Sets that are baked in code from scenes made in code, for tests of this crate and of those that depend on it. Not part of the
-//! commands.
+//! Sets that are baked in code from scenes made in code, for tests of this crate and of those that depend on it. Not
+//! part of the commands.
 
 pub mod maps;
 pub mod masks;
@@ -48,8 +48,8 @@ pub fn standing_sun(direction: DVec3, angular_radius_rad: f64) -> SunPath {
     SunPath::new(vec![arc], angular_radius_rad, 10.0).expect("a short turn is a path")
 }
 
-/// Bakes a scene whose meshes share no vertices between triangles: each triangle of each instance has a square of `cell`
-/// texels on a page of its own making. Without a path, a set without a sun.
+/// Bakes a scene whose meshes share no vertices between triangles: each triangle of each instance has a square of
+/// `cell` texels on a page of its own making. Without a path, a set without a sun.
 pub fn bake(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits) -> Stage {
     bake_lanes(scene, path, cell, bits, 1)
 }
@@ -173,7 +173,8 @@ fn layers_by(
     encoder.finish()
 }
 
-/// Draws a moment on the GPU and by its twin on the CPU. Gives how far they agree, to 1/255, on visibility and on the picture.
+/// Draws a moment on the GPU and by its twin on the CPU. Gives how far they agree, to 1/255, on visibility and on the
+/// picture.
 pub fn twins(
     on_gpu: &mut BakedGpu,
     on_cpu: &mut BakedCpu,
@@ -194,8 +195,8 @@ pub fn twins(
 /// A line of the table that tests print.
 pub fn table_line(name: &str, t: f64, what: &str, found: &Agreement) -> String {
     format!(
-        "{name:26} t {t:.4}  {what:10} {:6} pixels, {:8.4} % within 1/255, mean {:.6}, worst {:.4}; over: {:3} at edges, {:3} \
-         elsewhere",
+        "{name:26} t {t:.4}  {what:10} {:6} pixels, {:8.4} % within 1/255, mean {:.6}, worst {:.4}; over: {:3} at \
+         edges, {:3} elsewhere",
         found.pixels,
         found.share_within() * 100.0,
         found.mean,

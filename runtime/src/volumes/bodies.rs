@@ -1,12 +1,14 @@
 //! Bodies: triangles that are connected by edges, and which of them bound a solid.
 //!
-//! The volumes of a solid take half of the work: where a ray from a shaded point to the light leaves the body through a back face, it
-//! has entered through a front face, so the front faces alone cast the body's whole shadow. This takes two things:
+//! The volumes of a solid take half of the work: where a ray from a shaded point to the light leaves the body through a
+//! back face, it has entered through a front face, so the front faces alone cast the body's whole shadow. This takes
+//! two things:
 //!
-//! * The surface is *closed*: along every edge as many triangles run one way as the other. Edges of four triangles are allowed; open
-//!   edges, edges of three triangles and Moebius strips are not.
-//! * It is nowhere *inside out*: no point has a negative winding number. One ray is cast from every triangle, and the faces of its own
-//!   body are counted that it leaves and enters through. A body that is inside out everywhere is turned over.
+//! * The surface is *closed*: along every edge as many triangles run one way as the other. Edges of four triangles are
+//!   allowed; open edges, edges of three triangles and Moebius strips are not.
+//! * It is nowhere *inside out*: no point has a negative winding number. One ray is cast from every triangle, and the
+//!   faces of its own body are counted that it leaves and enters through. A body that is inside out everywhere is
+//!   turned over.
 //!
 //! Any other body is *open*. That costs more, and is right for any triangles.
 
@@ -15,8 +17,8 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use sunbake::trace::{Direction, Tracer};
 
-/// Tilts of rays against the normal, along two tangents. They are irregular, so that rays through typical models hit no edges. If the
-/// first ray finds a negative winding number, the other two are cast as well, and the median counts.
+/// Tilts of rays against the normal, along two tangents. They are irregular, so that rays through typical models hit no
+/// edges. If the first ray finds a negative winding number, the other two are cast as well, and the median counts.
 const TILTS: [[f64; 2]; 3] = [[0.211_324_87, 0.173_205_08], [-0.312_357_2, 0.087_431_9], [0.071_913_7, -0.283_177_1]];
 
 /// The bodies of a welded scene.
@@ -40,8 +42,8 @@ pub enum Shape {
 }
 
 impl Bodies {
-    /// Finds the bodies. `corners_m` are the welded triangles, counter-clockwise from the front; `flat` are their indices in the tracer's
-    /// geometry.
+    /// Finds the bodies. `corners_m` are the welded triangles, counter-clockwise from the front; `flat` are their
+    /// indices in the tracer's geometry.
     pub fn new(welded: &Welded, corners_m: &[[Vec3; 3]], flat: &[u32], tracer: &Tracer) -> Self {
         let (of_triangle, count) = connected(welded);
         let mut is_closed = vec![true; count];

@@ -17,8 +17,8 @@ use sunbake::scene::Alpha;
 const MOST_TRIANGLES: usize = 1024;
 /// Share of the scene's size beyond which a body is a caster alone.
 const LARGE: f64 = 0.25;
-/// Distance from a caster's plane within which points count as lying on it, as a share of the caster's size: as far as rounding to
-/// `f32` moves them.
+/// Distance from a caster's plane within which points count as lying on it, as a share of the caster's size: as far as
+/// rounding to `f32` moves them.
 pub const FLAT: f64 = 3e-7;
 
 /// Everything that casts shadows, welded and sorted by caster.

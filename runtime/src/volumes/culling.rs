@@ -1,14 +1,14 @@
-//! What a frame need not draw. This is decided on the CPU, for whole casters, and does not change any pixel. (One exception: surfaces just
-//! below a flat caster's plane. Volumes are moved away from the eye by a small distance, and leaving such a volume out is right where
-//! drawing it would be wrong.)
+//! What a frame need not draw. This is decided on the CPU, for whole casters, and does not change any pixel. (One
+//! exception: surfaces just below a flat caster's plane. Volumes are moved away from the eye by a small distance, and
+//! leaving such a volume out is right where drawing it would be wrong.)
 //!
 //! * A volume that misses the view.
 //! * A volume that contains no surface in view, such as that of a ground with nothing under it.
 //! * Caps that are out of view, and dark caps that are out of view.
 //! * Pixels that show no surface: a scissor rectangle. wgpu has no depth bounds test.
 //!
-//! A caster can also do without caps (z-pass) where the eye is surely outside of its volume. That is so where the caster does not reach
-//! into the *occlusion pyramid*, the convex hull of the view's near rectangle and the light.
+//! A caster can also do without caps (z-pass) where the eye is surely outside of its volume. That is so where the
+//! caster does not reach into the *occlusion pyramid*, the convex hull of the view's near rectangle and the light.
 
 use super::casters::{Caster, Casters, FLAT};
 use super::light::Light;
@@ -22,7 +22,8 @@ pub type Aabb = [DVec3; 2];
 /// How much wider than the near rectangle the pyramid is made, to allow for rounding.
 const PYRAMID_MARGIN: f64 = 4.0;
 
-/// How far a face may be moved across the line of sight, in pixels: by its bias, and as much again by rounding to the raster.
+/// How far a face may be moved across the line of sight, in pixels: by its bias, and as much again by rounding to the
+/// raster.
 const MOVED_PX: f64 = 1.0 / 64.0;
 /// How far it may also be moved along the line of sight, as a share of its distance.
 const MOVED_DEPTH: f64 = 4e-6;

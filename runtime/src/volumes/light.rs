@@ -1,5 +1,5 @@
-//! Which triangles face the light. That is decided once for each triangle, in `f64`, and used by its edges and caps alike, so that
-//! rounding cannot open a volume.
+//! Which triangles face the light. That is decided once for each triangle, in `f64`, and used by its edges and caps
+//! alike, so that rounding cannot open a volume.
 
 use super::bodies::cross;
 use super::casters::{Caster, Casters};
@@ -30,18 +30,20 @@ pub struct Faces {
     /// For each triangle, how its prism counts: 1 where its front faces the light and casts, -1 where its back does and
     /// casts, 0 where it casts nothing.
     pub of_triangle: Vec<i8>,
-    /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside none of them.
+    /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside
+    /// none of them.
     pub is_solid: Vec<bool>,
 }
 
-/// Distance from a triangle below which rounding hides on which side of it a lamp is, in `f32` steps of the largest coordinate.
+/// Distance from a triangle below which rounding hides on which side of it a lamp is, in `f32` steps of the largest
+/// coordinate.
 const TOUCH_STEPS: f64 = 8.0;
 /// A step of an `f32`, as a share of its value.
 const STEP: f64 = 1.0 / (1 << 23) as f64;
 
 impl Light {
-    /// Above zero where a triangle's front faces the light, below zero where its back does, zero where it is edge on. A lamp that is
-    /// nearer to the triangle's plane than rounding counts as being in it.
+    /// Above zero where a triangle's front faces the light, below zero where its back does, zero where it is edge on. A
+    /// lamp that is nearer to the triangle's plane than rounding counts as being in it.
     fn front(&self, corners: &[DVec3; 3]) -> f64 {
         let normal = cross(corners);
         match self {
@@ -66,8 +68,8 @@ impl Light {
             }
     }
 
-    /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; `spares` leaves them out.
-    /// Triangles that are edge on have no prism.
+    /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; `spares`
+    /// leaves them out. Triangles that are edge on have no prism.
     pub fn faces(&self, casters: &Casters, spares: bool) -> Faces {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
         let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
@@ -94,8 +96,8 @@ const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(-0.247_1, -0.183_9, 0.951_4),
 ];
 
-/// Whether a point may be inside one of a caster's bodies, or on its surface: some ray from it leaves more often than it enters, or a
-/// triangle is too near to decide.
+/// Whether a point may be inside one of a caster's bodies, or on its surface: some ray from it leaves more often than
+/// it enters, or a triangle is too near to decide.
 fn is_inside(casters: &Casters, caster: &Caster, point_m: DVec3) -> bool {
     let [low, high] = caster.bounds_m;
     let reach_m = touch_m(point_m, low.abs().max(high.abs()));

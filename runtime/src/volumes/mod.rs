@@ -1,5 +1,6 @@
-//! Shadow volumes: the space that casters shade, as closed bodies whose faces are counted in a stencil buffer (Crow, "Shadow
-//! algorithms for computer graphics", SIGGRAPH 1977; McGuire, "Efficient shadow volume rendering", *GPU Gems* chapter 9).
+//! Shadow volumes: the space that casters shade, as closed bodies whose faces are counted in a stencil buffer (Crow,
+//! "Shadow algorithms for computer graphics", SIGGRAPH 1977; McGuire, "Efficient shadow volume rendering", *GPU Gems*
+//! chapter 9).
 //!
 //! This module is geometry on the CPU; the passes are in [`crate::gpu`]. Read it in this order:
 //!
@@ -13,13 +14,14 @@
 //! culling, plan     what to draw of each caster, and how: once per view
 //! ```
 //!
-//! **Why it is right.** Each triangle that blocks light shades a prism. A volume is a sum of prisms, without the walls that cancel
-//! because two prisms share them with opposite signs. So it is closed for any mesh, and the count at a pixel is the number of prisms
-//! that contain its surface. Solids leave out prisms that shade nothing new. One thing is added: every face is moved away from the eye
-//! by a little more than rasterising can misplace it, so that surfaces do not shade themselves, nor the surfaces on which they lie.
+//! **Why it is right.** Each triangle that blocks light shades a prism. A volume is a sum of prisms, without the walls
+//! that cancel because two prisms share them with opposite signs. So it is closed for any mesh, and the count at a
+//! pixel is the number of prisms that contain its surface. Solids leave out prisms that shade nothing new. One thing is
+//! added: every face is moved away from the eye by a little more than rasterising can misplace it, so that surfaces do
+//! not shade themselves, nor the surfaces on which they lie.
 //!
-//! **What it does not do.** Alpha masks are ignored: a leaf casts the shadow of its whole card. Lights have no size: soft edges take
-//! many lights.
+//! **What it does not do.** Alpha masks are ignored: a leaf casts the shadow of its whole card. Lights have no size:
+//! soft edges take many lights.
 
 pub mod bodies;
 pub mod casters;
@@ -41,7 +43,8 @@ use std::fmt;
 /// How volumes are made and counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mode {
-    /// Silhouettes from the CPU; each caster is counted in front of the surface (z-pass) where that is right, else behind it (z-fail).
+    /// Silhouettes from the CPU; each caster is counted in front of the surface (z-pass) where that is right, else
+    /// behind it (z-fail).
     #[default]
     Planned,
     /// Silhouettes from the CPU, all counted behind the surface.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// Barycentric weights of a triangle's second and third corner at its point nearest to `point` (Ericson, *Real-Time Collision
-/// Detection*, 5.1.5).
+/// Barycentric weights of a triangle's second and third corner at its point nearest to `point` (Ericson, *Real-Time
+/// Collision Detection*, 5.1.5).
 pub fn nearest(&[a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 2] {
     let (ab, ac) = (b - a, c - a);
     let along = |from: DVec3| (ab.dot(point - from), ac.dot(point - from));

@@ -1,9 +1,9 @@
 //! How many prisms may contain one point. Eight bits of stencil count to 255, and 256 would read as lit.
 //!
-//! Seen from the light, a prism is its triangle, and the number of triangles at one spot bounds the count at any pixel. The light's view
-//! is cut in two, again and again, until few enough triangles reach into a cell, or the cell is so small that more cuts do not separate
-//! them. The sun's view is a plane. A lamp's view is the sphere around it, cut as a cube, where a triangle is a cone of three planes
-//! through the lamp. The bound may be too high, never too low.
+//! Seen from the light, a prism is its triangle, and the number of triangles at one spot bounds the count at any pixel.
+//! The light's view is cut in two, again and again, until few enough triangles reach into a cell, or the cell is so
+//! small that more cuts do not separate them. The sun's view is a plane. A lamp's view is the sphere around it, cut as
+//! a cube, where a triangle is a cone of three planes through the lamp. The bound may be too high, never too low.
 
 use super::casters::Casters;
 use super::light::Light;
@@ -57,8 +57,8 @@ impl TrianglesInLightView {
         self.cut(middle..run.end, most, found);
     }
 
-    /// Where to cut a cell: at the median of the middles of the triangles' parts in it, estimated from a sample. Cells become small where a
-    /// scene is dense, and a wide plain costs no cuts.
+    /// Where to cut a cell: at the median of the middles of the triangles' parts in it, estimated from a sample. Cells
+    /// become small where a scene is dense, and a wide plain costs no cuts.
     fn middle(&self, of: &[u32], cell: &CellBounds, axis: usize) -> f32 {
         let middle = |&i: &u32| {
             let [low, high] = &self.bounds[i as usize];
@@ -69,8 +69,8 @@ impl TrianglesInLightView {
         *sample.select_nth_unstable_by(half, f32::total_cmp).1
     }
 
-    /// Whether more than `most` of these triangles, all of which reach into a cell, may share a part of it that is as small as cells
-    /// get.
+    /// Whether more than `most` of these triangles, all of which reach into a cell, may share a part of it that is as
+    /// small as cells get.
     fn exceeds(&self, of: &[u32], cell: CellBounds, most: usize, depth: u32) -> bool {
         if of.len() <= most || !self.view.has_spots_in(&cell) {
             return false;
@@ -162,8 +162,8 @@ impl LightView {
                 (seen, [low - GROWTH, high + GROWTH])
             }
             Self::Sphere { centre_m } => {
-                // A spherical triangle lies within the cap around its middle that holds its corners. Beyond a hemisphere the
-                // cap may be the wrong one, and the whole sphere is taken.
+                // A spherical triangle lies within the cap around its middle that holds its corners. Beyond a
+                // hemisphere the cap may be the wrong one, and the whole sphere is taken.
                 let seen = corners.map(|corner| (corner - centre_m).normalize_or_zero());
                 let middle = (seen[0] + seen[1] + seen[2]).normalize_or_zero();
                 let reach = seen.iter().map(|s| s.distance(middle)).fold(0.0, f64::max);

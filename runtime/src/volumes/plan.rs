@@ -13,8 +13,8 @@ use std::ops::Range;
 /// How a caster's volume is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StencilMethod {
-    /// Faces in front of the surface, without caps at the caster. Cheaper, and wrong where the eye is in the volume or such a cap is
-    /// visible.
+    /// Faces in front of the surface, without caps at the caster. Cheaper, and wrong where the eye is in the volume or
+    /// such a cap is visible.
     ZPass {
         /// Whether caps at the far end are drawn: needed where that is not at infinity.
         dark_caps: bool,
@@ -113,8 +113,8 @@ impl FramePlan {
         Self { draws: chosen.iter().map(draw).collect(), scissor, counts }
     }
 
-    /// Index ranges of some parts of casters that are counted in front of the surface, or of those counted behind it. Adjacent ranges are
-    /// joined.
+    /// Index ranges of some parts of casters that are counted in front of the surface, or of those counted behind it.
+    /// Adjacent ranges are joined.
     pub fn ranges(
         &self,
         all: &[Parts],
@@ -189,8 +189,8 @@ impl Chooser<'_> {
         Choice::Drawn(StencilMethod::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
     }
 
-    /// Whether a caster may be counted in front of the surface without its caps: every cap is hidden by the surface that it lies on, and
-    /// the eye is outside of the volume.
+    /// Whether a caster may be counted in front of the surface without its caps: every cap is hidden by the surface
+    /// that it lies on, and the eye is outside of the volume.
     fn allows_z_pass(&self, index: usize) -> bool {
         let caster = &self.casters.all[index];
         let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.faces.is_solid[index]);

@@ -1,15 +1,15 @@
 //! Volumes of casters: the boundary of the prisms that are extruded from triangles away from the light.
 //!
-//! A triangle that blocks the light shades an infinite prism. The triangle is its *cap*, and from each of its edges a *wall* leads away
-//! from the light. Where two prisms share a wall, one counts it +1 and the other -1, and it cancels. So each edge's wall is drawn as
-//! often as the sum over its triangles says: not at all inside a lit patch, once around it, twice where a triangle that faces the light
-//! meets one that faces away. Faces are signed, and counting them along a line of sight counts the prisms that contain its end, for any
-//! triangles (after Bergeron, "A general version
-//! of Crow's shadow volumes", *IEEE CG&A* 6(9), 1986, and Kim, Kim and Turk, "A shadow-volume algorithm for opaque and
+//! A triangle that blocks the light shades an infinite prism. The triangle is its *cap*, and from each of its edges a
+//! *wall* leads away from the light. Where two prisms share a wall, one counts it +1 and the other -1, and it cancels.
+//! So each edge's wall is drawn as often as the sum over its triangles says: not at all inside a lit patch, once around
+//! it, twice where a triangle that faces the light meets one that faces away. Faces are signed, and counting them along
+//! a line of sight counts the prisms that contain its end, for any triangles (after Bergeron, "A general version of
+//! Crow's shadow volumes", *IEEE CG&A* 6(9), 1986, and Kim, Kim and Turk, "A shadow-volume algorithm for opaque and
 //! transparent nonmanifold casters", *Journal of Graphics Tools* 13(3), 2008).
 //!
-//! The sun's rays meet in one point at infinity, so its walls are single triangles and need no far cap. A lamp's walls are quads, and end
-//! in *dark caps*.
+//! The sun's rays meet in one point at infinity, so its walls are single triangles and need no far cap. A lamp's walls
+//! are quads, and end in *dark caps*.
 //!
 //! Corners are indices: below the number of points, a point; from there on, for the sun, the point where its rays meet,
 //! and for a lamp each point extruded away from it.
@@ -131,9 +131,9 @@ pub fn edge_count(casters: &Casters, faces: &[i8], edge: usize) -> i32 {
     casters.uses_of(edge).iter().map(|u| u.sign() * i32::from(faces[u.triangle()])).sum()
 }
 
-/// A wall outside of a patch whose boundary runs along the edge from its lower point to its higher (`way` 1) or back (-1).
-/// Both start at the same corner and cut the quad along the same diagonal, so that a rasteriser, which interpolates from the first
-/// corner, gives both the same depths.
+/// A wall outside of a patch whose boundary runs along the edge from its lower point to its higher (`way` 1) or back
+/// (-1). Both start at the same corner and cut the quad along the same diagonal, so that a rasteriser, which
+/// interpolates from the first corner, gives both the same depths.
 fn wall(casters: &Casters, [low, high]: [u32; 2], way: i32, extrusion: Extrusion) -> Vec<u32> {
     let points = casters.points_m.len() as u32;
     match (extrusion, way) {

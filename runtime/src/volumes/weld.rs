@@ -1,8 +1,8 @@
-//! Welding: corners with equal coordinates become one point, whatever mesh, primitive or texture seam they come from. Triangles that
-//! share two points share an edge.
+//! Welding: corners with equal coordinates become one point, whatever mesh, primitive or texture seam they come from.
+//! Triangles that share two points share an edge.
 //!
-//! Coordinates are compared bit for bit. A tolerance would move corners, and then a shadow volume would not start exactly at the surface
-//! that is drawn.
+//! Coordinates are compared bit for bit. A tolerance would move corners, and then a shadow volume would not start
+//! exactly at the surface that is drawn.
 
 use glam::Vec3;
 use rayon::prelude::*;

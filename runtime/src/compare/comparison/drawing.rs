@@ -70,8 +70,8 @@ impl Comparison<'_> {
     }
 }
 
-/// Draws all frames once, then in each round again. `start` is when building the technique began. Without rounds the first drawing
-/// is the only one, and counts.
+/// Draws all frames once, then in each round again. `start` is when building the technique began. Without rounds the
+/// first drawing is the only one, and counts.
 fn draw_frames(
     technique: &mut dyn Technique,
     rounds: u32,

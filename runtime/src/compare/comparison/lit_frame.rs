@@ -1,5 +1,5 @@
-//! Lit pictures of a frame, put together from two: light is linear in visibility, so any technique's picture lies between the scene
-//! with the sun hidden and the scene with the sun seen everywhere.
+//! Lit pictures of a frame, put together from two: light is linear in visibility, so any technique's picture lies
+//! between the scene with the sun hidden and the scene with the sun seen everywhere.
 
 use super::frame_indices;
 use crate::camera::View;

@@ -1,8 +1,8 @@
 //! A comparison: every technique draws every frame, and each picture is compared with the reference's.
 //!
-//! Techniques are built, drawn with and dropped one after the other, so that only one is in memory. Each draws all frames once to
-//! warm up, and then all of them again in each round; the least of a frame's times counts. Nothing is kept from frame to frame, as
-//! under a sun that moves: shadow maps and silhouettes are found anew.
+//! Techniques are built, drawn with and dropped one after the other, so that only one is in memory. Each draws all
+//! frames once to warm up, and then all of them again in each round; the least of a frame's times counts. Nothing is
+//! kept from frame to frame, as under a sun that moves: shadow maps and silhouettes are found anew.
 
 mod drawing;
 mod lit_frame;
@@ -81,7 +81,8 @@ impl Comparison<'_> {
         self.techniques.iter().chain([&self.against]).map(|one| frames * rounds(one)).sum()
     }
 
-    /// Draws and compares on a stage that holds no times. `on_frame` is called after each frame, and returns false to stop.
+    /// Draws and compares on a stage that holds no times. `on_frame` is called after each frame, and returns false to
+    /// stop.
     pub fn run(&self, stage: Stage, on_frame: &dyn Fn() -> bool) -> Result<Outcome, CompareError> {
         let lit = lit_frames(&stage, self.views, self.times);
         // Only visibility is compared, so techniques need no maps of ambient light.
@@ -123,7 +124,8 @@ impl Comparison<'_> {
         Ok(outcome)
     }
 
-    /// Truths of the sun's centre. None unless some technique takes the sun for a point and the reference is soft truth.
+    /// Truths of the sun's centre. None unless some technique takes the sun for a point and the reference is soft
+    /// truth.
     fn hard_truths(&self, frames: &[FrameRequest]) -> Result<Option<Vec<Raster<f32>>>, CompareError> {
         let is_wanted = matches!(self.against, TechniqueSpec::Truth(Truth::Soft { .. }))
             && self.techniques.iter().any(TechniqueSpec::is_hard);
@@ -150,7 +152,8 @@ impl Comparison<'_> {
         Ok(ReferenceEntry { name: self.against.to_string(), frame_ms: mean_times(&drawn.times).frame_ms, noise })
     }
 
-    /// The mean error of soft truth against four times as many rays, in the frame with most penumbra. None without frames.
+    /// The mean error of soft truth against four times as many rays, in the frame with most penumbra. None without
+    /// frames.
     fn noise(&self, rays: u32, frames: &[FrameRequest], drawn: &DrawnFrames) -> Result<Option<f64>, CompareError> {
         let penumbra = |seen: &Raster<f32>| seen.pixels.iter().filter(|&&seen| seen > 0.0 && seen < 1.0).count();
         let Some(softest) = (0..frames.len()).max_by_key(|&i| penumbra(&drawn.visibility[i])) else {

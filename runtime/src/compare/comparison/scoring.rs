@@ -11,7 +11,8 @@ use crate::image::Raster;
 use rayon::prelude::*;
 
 impl Comparison<'_> {
-    /// What a report says of a technique. `lumas` are the reference's lit pictures, `hard_truths` truths of the sun's centre.
+    /// What a report says of a technique. `lumas` are the reference's lit pictures, `hard_truths` truths of the sun's
+    /// centre.
     pub(super) fn scored(
         &self,
         technique: TechniqueSpec,

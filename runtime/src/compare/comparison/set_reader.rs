@@ -42,7 +42,8 @@ fn entry_of(folder: &Path, manifest: &Manifest) -> SetEntry {
     }
 }
 
-/// The set that a playback reads: the one with as many lanes or, for a single lane, any set, whose middle lane is then taken.
+/// The set that a playback reads: the one with as many lanes or, for a single lane, any set, whose middle lane is then
+/// taken.
 pub(super) fn set_for(sets: &[SetOnDisk], playback: Playback) -> Option<&SetOnDisk> {
     let has = |set: &&SetOnDisk| set.entry.lanes == playback.lanes as u64;
     sets.iter().find(has).or_else(|| sets.first().filter(|_| playback.lanes == 1))

@@ -1,14 +1,14 @@
-// The viewer's controls: each is made and wired once, and brought in line with the state by `showControls`.
+// The viewer's controls: each is created and wired once, and updated from the state by `showControls`.
 
 const FAMILIES = { baked: "Baked", volumes: "Shadow volumes", map: "Shadow maps", truth: "Ray traced" };
 /** How far an arrow key moves the divider, and how far with Shift. */
 const KEY_STEPS = [0.01, 0.1];
-/** How long a moment stays while the day passes. */
+/** Duration of each time while the day plays. */
 const PLAY_STEP_MS = 400;
-/** Differences that the legend names. */
+/** Differences at the ticks of the legend. */
 const LEGEND = [0, 0.08, 0.24, 0.48, 1];
 
-// --- In line with the state ----------------------------------------------------------------------------------------
+// --- Updated from the state -----------------------------------------------------------------------------------------
 
 function showControls() {
   for (const side of SIDES) showSide(side);
@@ -43,7 +43,7 @@ function showTime() {
   element("clock").textContent = moment;
 }
 
-/** Differences as colours; each number stands where its colour is. */
+/** The legend: each number is placed at its colour. */
 function showLegend() {
   const { mode, gain } = state;
   element("legend").hidden = mode === "picture" || mode === "visibility";
@@ -66,7 +66,7 @@ function showDivider() {
   element("divider").setAttribute("aria-valuetext", `${percent}% ${nameOf(state.left)}`);
 }
 
-/** Rows of the page's tables say on which side their technique is. */
+/** Marks the table rows of the two techniques shown. */
 function showRows() {
   for (const row of document.querySelectorAll("tr[data-technique]")) {
     const on = SIDES.filter((side) => String(state[side]) === row.dataset.technique);
@@ -95,7 +95,7 @@ function showNumbers(side) {
   element("root").querySelector(`tr[data-side=${side}]`).replaceChildren(...cells);
 }
 
-// --- Made once -----------------------------------------------------------------------------------------------------
+// --- Created once --------------------------------------------------------------------------------------------------
 
 function fillSelect(select) {
   const reference = document.createElement("optgroup");
@@ -161,7 +161,7 @@ function play() {
 
 // --- The picture ---------------------------------------------------------------------------------------------------
 
-/** Where a pointer is on the picture, as shares of its width and height. */
+/** The position of the pointer on the picture, as shares of its width and height. */
 function shares({ clientX, clientY }) {
   const box = element("canvas").getBoundingClientRect();
   return [(clientX - box.left) / box.width, (clientY - box.top) / box.height].map((share) => clamp(share, 0, 1));
@@ -227,7 +227,7 @@ function wireKeys() {
   });
 }
 
-/** Rows of tables and marks of plots that name a technique put it on a side. */
+/** A click on a row or a mark of a technique shows it on a side. */
 function wireRows() {
   document.addEventListener("click", choose);
   for (const row of document.querySelectorAll("tr[data-technique]")) {
@@ -249,7 +249,7 @@ function choose(event) {
 
 // --- Start ---------------------------------------------------------------------------------------------------------
 
-/** Refuses what cannot be shown, so that it is said once and early. */
+/** Rejects reports that cannot be shown, with one message at the start. */
 function refuseWhatCannotBeShown() {
   const lacks = [report.cameras, report.times, pictures.frames].some((list) => !list?.length);
   if (lacks) throw new Error("it has no cameras, no times or no pictures");

@@ -1,4 +1,5 @@
-//! The report of a comparison: `report.json`, whose schema is `runtime/schemas/compare.schema.json`, and a page of HTML.
+//! The report of a comparison: `report.json`, whose schema is `runtime/schemas/compare.schema.json`, and a page of
+//! HTML.
 //!
 //! Every error stands beside the time and the bytes that it cost, and every time beside its error.
 
@@ -117,8 +118,8 @@ pub struct ReferenceEntry {
     pub name: String,
     /// Milliseconds per frame, without finding which surface each pixel shows.
     pub frame_ms: f64,
-    /// Its mean error against truth with four times as many rays, in the frame with most penumbra: errors of this size are noise.
-    /// Null where the reference has no noise.
+    /// Its mean error against truth with four times as many rays, in the frame with most penumbra: errors of this size
+    /// are noise. Null where the reference has no noise.
     pub noise: Option<f64>,
 }
 
@@ -160,8 +161,8 @@ pub struct TechniqueEntry {
     pub is_hard: bool,
     /// Its error against the reference, over all frames.
     pub error: Score,
-    /// Error against truth of the sun's centre, for a technique that takes the sun for a point. Null for others, and where the
-    /// reference is not soft truth.
+    /// Error against truth of the sun's centre, for a technique that takes the sun for a point. Null for others, and
+    /// where the reference is not soft truth.
     pub hard_error: Option<Score>,
     /// Mean times of a frame.
     pub times: Times,
@@ -181,7 +182,8 @@ pub struct TechniqueEntry {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Times {
-    /// Milliseconds per frame: its passes and the CPU's work for them or, where passes are not timed, from call to picture.
+    /// Milliseconds per frame: its passes and the CPU's work for them or, where passes are not timed, from call to
+    /// picture.
     pub frame_ms: f64,
     /// Milliseconds of the passes by the adapter's clock; null where they are not timed.
     pub passes: Option<Passes>,
@@ -211,8 +213,8 @@ pub struct Passes {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Preparation {
-    /// Seconds to bake, with all stages but ambient light; null where nothing is baked, and for one lane of a set with several. For
-    /// eight bits made of sixteen it is the set's, since rounding takes next to no time.
+    /// Seconds to bake, with all stages but ambient light; null where nothing is baked, and for one lane of a set with
+    /// several. For eight bits made of sixteen it is the set's, since rounding takes next to no time.
     pub bake_s: Option<f64>,
     /// Seconds to upload the scene and build pipelines.
     pub setup_s: f64,

@@ -1,8 +1,8 @@
 //! The pictures of a report, small enough to be part of its page.
 //!
-//! A page with a colour picture for each technique, camera and time would have hundreds of megabytes. All techniques shade alike, and
-//! light is linear in the visibility of the sun. So a frame needs two colour pictures, with the sun hidden and with the sun seen
-//! everywhere, and a grey one for each technique. The browser puts them together.
+//! A page with a colour picture for each technique, camera and time would have hundreds of megabytes. All techniques
+//! shade alike, and light is linear in the visibility of the sun. So a frame needs two colour pictures, with the sun
+//! hidden and with the sun seen everywhere, and a grey one for each technique. The browser puts them together.
 
 use super::super::comparison::{LitFrame, Outcome, visibility_codes};
 use crate::image::Raster;

@@ -1,4 +1,4 @@
-// Pixels of the viewer: what the sun's visibility makes of a scene, as codes for a canvas.
+// Pixels of the viewer: from the sun's visibility to colour codes for a canvas.
 //
 // Twins of `light/tone.rs`, `texture.rs` and `sheet/heat.rs`; a test compares them code by code. Pictures come as the RGBA
 // bytes of decoded images. A picture of visibility is grey, so its first channel is read: 0 is shade, 255 is full sun.
@@ -10,7 +10,7 @@ function srgbFromLinear(x) {
   return x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055;
 }
 
-/** sRGB codes of display-linear numbers from 0 to 1; fine enough to be off by one code at most. */
+/** sRGB codes of display-linear numbers from 0 to 1, accurate to one code. */
 const SRGB_STEPS = 16384;
 const SRGB_CODES = Uint8Array.from({ length: SRGB_STEPS + 1 }, (_, i) => Math.round(255 * srgbFromLinear(i / SRGB_STEPS)));
 
@@ -30,8 +30,8 @@ function putLight(codes, at, r, g, b) {
 }
 
 /**
- * The scene as the sun lights it. `dark` and `open` are the scene with the sun hidden and seen everywhere, as square roots
- * of light: `light = scale * (code / 255)^2`.
+ * The scene as the sun lights it. `dark` and `open` are the scene with the sun hidden and with the sun seen everywhere,
+ * as square roots of light: `light = scale * (code / 255)^2`.
  */
 function litPicture({ dark, open, scale }, seen) {
   const light = Float32Array.from({ length: 256 }, (_, code) => EXPOSURE * scale * (code / 255) ** 2);
@@ -44,7 +44,7 @@ function litPicture({ dark, open, scale }, seen) {
   return codes;
 }
 
-/** sRGB stops at even steps. Brightness grows all the way, so that a map reads the same in grey. */
+/** sRGB stops at even steps. Brightness increases throughout, so that a map can be read in grey as well. */
 const HEAT_STOPS = [[16, 14, 22], [72, 24, 102], [158, 40, 100], [226, 88, 50], [250, 170, 52], [252, 250, 190]];
 
 function heat(share) {
@@ -53,7 +53,7 @@ function heat(share) {
   return HEAT_STOPS[low].map((code, k) => Math.round(code + (HEAT_STOPS[low + 1][k] - code) * (place - low)));
 }
 
-/** How far two pictures of visibility lie apart. The sRGB curve lifts small differences, so that they can be seen. */
+/** The difference of two pictures of visibility. The sRGB curve brightens small differences. */
 function heatPicture(a, b, gain) {
   const colors = Array.from({ length: 256 }, (_, step) => heat(srgbFromLinear(Math.min((gain * step) / 255, 1))));
   const codes = new Uint8ClampedArray(a.length);

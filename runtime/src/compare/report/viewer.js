@@ -1,9 +1,9 @@
 // The viewer: two techniques side by side, at any camera and time of the report.
 //
-// One module is made of `pixels.js`, this file and `controls.js`, so that nothing is global but `window.sunbakeViewer`, for
-// tests. What is shown is `state`; every control changes it through `change`, and `show` brings the picture in line with
-// it. Images decode when they are first needed. `show` waits for them, so a later change may overtake it: only the latest
-// one draws. The divider and the spot that is read need no new picture.
+// `pixels.js`, this file and `controls.js` are joined into one module, so that the only global is
+// `window.sunbakeViewer`, which is for tests. `state` holds the current choices. Every control changes it through
+// `change`, and `show` redraws the picture. Images are decoded when they are first needed. `show` waits for them, so a
+// later change may overtake it: only the latest call draws. Moving the divider and reading a pixel need no new picture.
 
 const REFERENCE = "reference";
 const SIDES = ["left", "right"];
@@ -11,9 +11,9 @@ const MODES = ["picture", "visibility", "difference", "error"];
 const GAINS = [1, 4, 16];
 /** Bytes of decoded images kept. */
 const CACHE_BYTES = 96e6;
-/** Pixels to each side of the one that is read. */
+/** Pixels shown to each side of the one that is read. */
 const REACH_PX = 6;
-/** Wait before the address follows the state: browsers refuse an address that changes all the time. */
+/** Delay before the address is updated: browsers reject frequent updates. */
 const ADDRESS_DELAY_MS = 250;
 
 const element = (id) => document.getElementById(`viewer-${id}`);
@@ -22,7 +22,7 @@ const stored = (id) => JSON.parse(document.getElementById(id).textContent);
 const clamp = (x, low, high) => Math.min(Math.max(x, low), high);
 
 let report, pictures, width, height, state;
-/** What the canvas shows: codes of each side, visibility of each side, what is wrong with each side. */
+/** What the canvas shows: colour codes, visibility and error message of each side. */
 let shown = { codes: {}, seen: {}, problem: {} };
 
 // --- Names ---------------------------------------------------------------------------------------------------------
@@ -49,25 +49,25 @@ function firstState() {
 function address() {
   const { camera, time, left, right, mode, gain, split } = state;
   const side = (choice) => (choice === REFERENCE ? REFERENCE : nameOf(choice));
-  const said = { camera, time, left: side(left), right: side(right), mode, gain, split: split.toFixed(3) };
-  return `#${new URLSearchParams(said)}`;
+  const params = { camera, time, left: side(left), right: side(right), mode, gain, split: split.toFixed(3) };
+  return `#${new URLSearchParams(params)}`;
 }
 
-/** What an address says of the state; what it does not say, or says of another report, is left out. */
+/** The part of the state that an address contains; choices that this report does not have are left out. */
 function stateIn(hash) {
-  const said = new URLSearchParams(hash.slice(1));
-  const number = (key) => Number.parseFloat(said.get(key) ?? "");
-  const told = {};
-  if (number("camera") in report.cameras) told.camera = number("camera");
-  if (number("time") in report.times) told.time = number("time");
+  const params = new URLSearchParams(hash.slice(1));
+  const number = (key) => Number.parseFloat(params.get(key) ?? "");
+  const found = {};
+  if (number("camera") in report.cameras) found.camera = number("camera");
+  if (number("time") in report.times) found.time = number("time");
   for (const side of SIDES) {
-    const choice = choiceOf(said.get(side));
-    if (isChoice(choice)) told[side] = choice;
+    const choice = choiceOf(params.get(side));
+    if (isChoice(choice)) found[side] = choice;
   }
-  if (MODES.includes(said.get("mode"))) told.mode = said.get("mode");
-  if (GAINS.includes(number("gain"))) told.gain = number("gain");
-  if (number("split") >= 0 && number("split") <= 1) told.split = number("split");
-  return told;
+  if (MODES.includes(params.get("mode"))) found.mode = params.get("mode");
+  if (GAINS.includes(number("gain"))) found.gain = number("gain");
+  if (number("split") >= 0 && number("split") <= 1) found.split = number("split");
+  return found;
 }
 
 let addressTimer;
@@ -92,7 +92,7 @@ async function decoded(url) {
   return scratch.getImageData(0, 0, width, height).data;
 }
 
-/** As `decoded`, from the cache where it is there. The one that was not asked for the longest leaves first. */
+/** As `decoded`, cached. The least recently used image is dropped first. */
 function cached(url) {
   const image = cache.get(url) ?? decoded(url);
   cache.delete(url);
@@ -101,7 +101,7 @@ function cached(url) {
   return image;
 }
 
-/** An image, or why it is not there. */
+/** An image, or an error message. */
 async function fetched(url, what) {
   const where = `from ${cameraName(state.camera)} at ${momentName(report.times[state.time])}`;
   if (!url) return { problem: `There is no picture of ${what} ${where}.` };
@@ -124,7 +124,7 @@ function seenBy(choice, frame) {
 let latest = Promise.resolve();
 let newest = 0;
 
-/** Ends when what was last asked for is on the canvas. */
+/** Resolves when the canvas shows the current state. */
 async function settled() {
   let seen;
   do await (seen = latest);
@@ -162,7 +162,7 @@ async function show(ticket) {
   element("stage").setAttribute("aria-busy", "false");
 }
 
-/** Both sides as codes, with the visibility that they come from. */
+/** Colour codes of both sides, and their visibility. */
 async function sides(asked, frame) {
   const { mode, gain } = asked;
   const of = (key, what) => fetched(frame[key], what);
@@ -186,7 +186,7 @@ function composed(mode, gain, scale, [seen, ...others]) {
   return heatPicture(seen, others[0], gain);
 }
 
-/** A difference belongs to both sides alike, so that the divider has nothing to divide. */
+/** A difference is one picture, which the divider does not split. */
 const dividedAt = () => Math.round(width * (state.mode === "difference" ? 1 : state.split));
 
 function paint() {
@@ -207,7 +207,7 @@ function showProblem(side) {
   message.hidden = !problem || (state.mode === "difference" && side === "right");
 }
 
-/** The pixel that was pointed at: what both sides see there, and what lies around it. */
+/** The pixel that is read: the visibility on both sides, and the pixels around it. */
 function showSpot() {
   const { spot } = state;
   element("spot").hidden = !spot;
@@ -217,12 +217,12 @@ function showSpot() {
   showTile("right", right, right && middle(right));
   const both = left && right;
   showTile("difference", both && heatPicture(left, right, state.gain), both && Math.abs(middle(left) - middle(right)));
-  element("place").textContent = `Visibility at column ${spot[0]}, row ${spot[1]}. The place stays when the time moves.`;
+  element("place").textContent = `Visibility at column ${spot[0]}, row ${spot[1]}. The pixel stays selected when the time changes.`;
   element("spot").style.left = `${(100 * (spot[0] + 0.5)) / width}%`;
   element("spot").style.top = `${(100 * (spot[1] + 0.5)) / height}%`;
 }
 
-/** What the middle pixel of a square sees of the sun. */
+/** Visibility at the middle pixel of a square. */
 const middle = (square) => square[4 * ((square.length / 4 - 1) / 2)] / 255;
 
 function showTile(of, square, seen) {

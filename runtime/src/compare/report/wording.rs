@@ -54,13 +54,15 @@ impl Report {
         text
     }
 
-    /// The result in a few sentences: error and cost of the best baked technique and of the best live one ([`BestPair`]).
+    /// The result in a few sentences: error and cost of the best baked technique and of the best live one
+    /// ([`BestPair`]).
     pub fn findings(&self) -> Vec<String> {
         let Some(BestPair { baked, live }) = BestPair::of(&self.techniques) else { return Vec::new() };
         let [baked, live] = [baked, live].map(|i| &self.techniques[i]);
         let cost = |one: &TechniqueEntry| {
             format!(
-                "has a mean error of {}, with {:.2} % of pixels wrong by more than a half; it takes {} a frame and {} of memory",
+                "has a mean error of {}, with {:.2} % of pixels wrong by more than a half; it takes {} a frame and \
+                 {} of memory",
                 plain(one.error.mean, 2),
                 one.error.wrong_share * 100.0,
                 with_unit(one.times.frame_ms, "ms"),
