@@ -9,20 +9,14 @@
 //! node's children separately, so no lane is spent on a ray that did not meet the node.
 //!
 //! Precision: boxes and triangles are tested in `f32`, conservatively: boxes are enlarged, and a triangle is a
-//! candidate if the ray passes within [`CORNER_PADDING`] of it. Candidates are then tested in `f64`, with the test of
+//! candidate if the ray passes close to it (`ray_f32.rs`). Candidates are then tested in `f64`, with the test of
 //! [`Tracer`]. So results equal the tracer's, are watertight at shared edges, and do not depend on the SIMD width.
 
-use super::bvh16::{Bvh16, Bvh16Leaf, Bvh16Node, Child, WIDTH, bits, first_lanes, push_far_first};
+use super::bvh16::{Bvh16, Child, WIDTH, bits, first_lanes, push_far_first};
+use super::ray_f32::{BOX_PADDING, RayF32, leaf_met, node_met};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
 use glam::{DMat3, DVec3};
-
-/// Growth of every box in tracer space (whose half size is 512 to 1024): more than the rounding of a ray's start and of
-/// its distances.
-const BOX_PADDING: f32 = 1.0 / 256.0;
-/// Largest distance of a ray from a candidate triangle, in tracer space: sixteen rounding steps of an `f32` at 1024.
-/// Start, shear and differences are rounded by a quarter of that, the products of edge functions by another quarter.
-const CORNER_PADDING: f32 = 1.0 / 512.0;
 
 /// Traces packets of rays in all directions. Positions and distances in its methods are in bake space, in metres.
 pub struct PacketTracer<'a> {
@@ -53,30 +47,6 @@ struct QueuedChild {
     met_by: u32,
     /// Least distance along any of the rays that met it, tracer space.
     near: f32,
-}
-
-/// A ray rounded to `f32` for the conservative tests, tracer space.
-#[derive(Debug)]
-struct RayF32 {
-    start: [f32; 3],
-    inverse: [f32; 3],
-    axes: [usize; 3],
-    /// Shear along the first two axes, and one over the direction's largest component.
-    shear: [f32; 3],
-}
-
-impl RayF32 {
-    fn new(start: DVec3, direction: &Direction) -> Self {
-        // A component of zero would give NaN for a box side that the ray starts on.
-        let inverse = |d: f64| 1.0 / if d.abs() < 1e-12 { 1e-12f64.copysign(d) } else { d };
-        let unit = direction.unit();
-        Self {
-            start: start.as_vec3().to_array(),
-            inverse: [unit.x, unit.y, unit.z].map(|d| inverse(d) as f32),
-            axes: direction.axes,
-            shear: direction.shear.as_vec3().to_array(),
-        }
-    }
 }
 
 /// Most rays in a packet.
@@ -310,129 +280,5 @@ fn is_nearer((id, distance): (u32, f64), found: &Option<NearestHit>, reach: f64)
     }
 }
 
-/// The set of a node's boxes that a ray meets before `far`. `near` gets the distances at which it enters them.
-#[inline(always)]
-fn node_met<S: Simd>(simd: S, node: &Bvh16Node, ray: &RayF32, far: f32, near: &mut [f32; WIDTH]) -> u32 {
-    let [x, y, z] = ray.inverse;
-    let middle_x = (f32x16::from_slice(simd, &node.centre[0]) - ray.start[0]) * x;
-    let middle_y = (f32x16::from_slice(simd, &node.centre[1]) - ray.start[1]) * y;
-    let middle_z = (f32x16::from_slice(simd, &node.centre[2]) - ray.start[2]) * z;
-    let half_x = f32x16::from_slice(simd, &node.half[0]) * x.abs();
-    let half_y = f32x16::from_slice(simd, &node.half[1]) * y.abs();
-    let half_z = f32x16::from_slice(simd, &node.half[2]) * z.abs();
-    let enters = (middle_x - half_x).max(middle_y - half_y).max(middle_z - half_z);
-    let leaves = (middle_x + half_x).min(middle_y + half_y).min(middle_z + half_z);
-    let starts = enters.max(f32x16::splat(simd, 0.0));
-    let met = starts.simd_le(leaves.min(f32x16::splat(simd, far)));
-    starts.store_slice(near);
-    met.to_bitmask() as u32 & first_lanes(node.count)
-}
-
-/// The set of a leaf's triangles that a ray may hit before `far`.
-#[inline(always)]
-fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, ray: &RayF32, far: f32) -> u32 {
-    let [i, j, k] = ray.axes;
-    let [shear_x, shear_y, along] = ray.shear;
-    let [a, b, c] = &leaf.corners;
-    let a_z = f32x16::from_slice(simd, &a[k]) - ray.start[k];
-    let b_z = f32x16::from_slice(simd, &b[k]) - ray.start[k];
-    let c_z = f32x16::from_slice(simd, &c[k]) - ray.start[k];
-    let a_x = f32x16::from_slice(simd, &a[i]) - ray.start[i] - a_z * shear_x;
-    let b_x = f32x16::from_slice(simd, &b[i]) - ray.start[i] - b_z * shear_x;
-    let c_x = f32x16::from_slice(simd, &c[i]) - ray.start[i] - c_z * shear_x;
-    let a_y = f32x16::from_slice(simd, &a[j]) - ray.start[j] - a_z * shear_y;
-    let b_y = f32x16::from_slice(simd, &b[j]) - ray.start[j] - b_z * shear_y;
-    let c_y = f32x16::from_slice(simd, &c[j]) - ray.start[j] - c_z * shear_y;
-    let a_size = (a_x.abs() + a_y.abs()) * CORNER_PADDING;
-    let b_size = (b_x.abs() + b_y.abs()) * CORNER_PADDING;
-    let c_size = (c_x.abs() + c_y.abs()) * CORNER_PADDING;
-    let from_a = c_x * b_y - c_y * b_x;
-    let from_b = a_x * c_y - a_y * c_x;
-    let from_c = b_x * a_y - b_y * a_x;
-    let (pad_a, pad_b, pad_c) = (b_size + c_size, c_size + a_size, a_size + b_size);
-    let zero = f32x16::splat(simd, 0.0);
-    let least = (from_a + pad_a).min(from_b + pad_b).min(from_c + pad_c);
-    let most = (from_a - pad_a).max(from_b - pad_b).max(from_c - pad_c);
-    let passed = least.simd_ge(zero) | most.simd_le(zero);
-    let (a_z, b_z, c_z) = (a_z * along, b_z * along, c_z * along);
-    let farthest = a_z.max(b_z).max(c_z);
-    let nearest = a_z.min(b_z).min(c_z);
-    let padding = f32x16::splat(simd, BOX_PADDING);
-    let ahead = farthest.simd_ge(-padding) & nearest.simd_le(padding + far);
-    (passed & ahead).to_bitmask() as u32 & first_lanes(leaf.count)
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Geometry;
-    use crate::testing::{SceneBuilder, block, floor, icosphere, pseudo_random};
-    use glam::{Vec2, Vec3};
-
-    /// Spheres, posts and slivers on a floor; rays from all over it in all directions, sixteen at a time.
-    fn packets(check: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
-        let mut builder = SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0));
-        for i in 0..12 {
-            let at = Vec3::new((i % 4) as f32 * 2.0 - 3.0, 0.3, (i / 4) as f32 * 2.0 - 2.0);
-            let stone: Vec<[Vec3; 3]> = icosphere(2).iter().map(|t| t.map(|v| v * 0.5 + at)).collect();
-            builder = builder.soup(&stone).soup(&block(at + Vec3::X, at + Vec3::new(1.004, 2.0, 0.3)));
-        }
-        let scene = builder.build();
-        let geometry = Geometry::new(&scene);
-        let tracer = Tracer::new(&scene, &geometry);
-        let mut packet_tracer = PacketTracer::new(&tracer);
-        let mut state = 5;
-        let mut random = || pseudo_random(&mut state);
-        for _ in 0..400 {
-            let spread = random();
-            let axis = DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5).normalize();
-            let mut query = || {
-                let triangle = (random() * geometry.triangles.len() as f64) as u32;
-                let point = geometry.point(triangle as usize, [random() * 0.5, random() * 0.5]);
-                let normal = geometry.normal(triangle as usize);
-                let way = (axis + spread * DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5)).normalize();
-                let direction = if way.dot(normal) < 0.0 { -way } else { way };
-                ShadowQuery { origin_m: tracer.lift(point, normal, triangle), direction, triangle }
-            };
-            let queries: Vec<ShadowQuery> = (0..PACKET).map(|_| query()).collect();
-            check(&tracer, &mut packet_tracer, &queries);
-        }
-    }
-
-    #[test]
-    fn packets_are_occluded_where_single_rays_are() {
-        packets(|tracer, packet_tracer, queries| {
-            let expected = queries.iter().map(|q| tracer.is_occluded(q.origin_m, &Direction::new(q.direction)));
-            let expected =
-                expected.enumerate().fold(0, |bits, (i, is_occluded_alone)| bits | u32::from(is_occluded_alone) << i);
-            for level in [Level::new(), Level::baseline()] {
-                packet_tracer.level = level;
-                for count in [PACKET, 5] {
-                    let mut guess = None;
-                    for _ in 0..2 {
-                        let occluded =
-                            packet_tracer.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
-                        assert_eq!(occluded, expected & first_lanes(count));
-                    }
-                }
-            }
-        });
-    }
-
-    #[test]
-    fn packets_find_the_nearest_hits_of_single_rays() {
-        packets(|tracer, packet_tracer, queries| {
-            for (level, reach_m) in [(Level::new(), f64::INFINITY), (Level::baseline(), 1.5)] {
-                packet_tracer.level = level;
-                let found = packet_tracer.nearest(&mut PacketScratch::default(), queries, reach_m);
-                for (query, found) in queries.iter().zip(found) {
-                    let hit = tracer.closest_hit(query.origin_m, &Direction::new(query.direction));
-                    let expected = hit.filter(|hit| hit.distance_m <= reach_m).map(|hit| hit.distance_m);
-                    let off = expected.zip(found).map(|(expected, found)| (expected - found.distance_m).abs());
-                    assert_eq!(expected.is_some(), found.is_some(), "{expected:?} {found:?}");
-                    assert!(off.is_none_or(|off| off < 1e-4), "{expected:?} {found:?}");
-                }
-            }
-        });
-    }
-}
+mod tests;
