@@ -1,25 +1,25 @@
-//! N rays a point, and then more where the answer changed: edges as sharp as asked for, at a logarithm's cost.
+//! N rays a point, then bisection where the answer changes: edges as precise as asked for, at logarithmic cost.
 //!
-//! Theory: between a sun that is seen and one that is not lies an edge, and a ray half-way says in which half. So an edge
-//! is known to `1/2^k` of a coarse step for k rays, where evenly spaced rays would take `2^k` times as many suns.
+//! Theory: between a visible and an occluded position of the sun lies an edge, and a ray half-way tells in which half. So k rays
+//! find an edge to `1/2^k` of a coarse step, where evenly spaced rays would need `2^k` times as many positions.
 //!
-//! Practice: horizon and surface cut the path in closed form, so edges there are exact. Each spell between has its own
-//! suns: its two ends, and those of N suns that fall inside it (the first of the N at t = 0, the last at t = 1). Every
-//! change from one sun to the next is halved until both sides are `2 * edge_seconds` apart, and the edge is put in the
-//! middle. While halving, what hid the dark side is tried before the hierarchy is walked: the edge is mostly its own.
+//! Practice: the horizon and the surface's plane divide the path in closed form, so edges there are exact. Each span between them
+//! has its own positions of the sun: its two ends, and those of the N that fall inside it (the first of the N at t = 0, the last at
+//! t = 1). Every change from one position to the next is bisected until both sides are `2 * edge_seconds` apart, and the edge is
+//! put in the middle. While bisecting, the occluder of the dark side is tested before the hierarchy is walked: the edge is mostly its.
 //!
-//! What is missed: whatever begins and ends between two neighbouring suns, so any spell of light or shade shorter than
-//! `1/(N - 1)` of the path may be; and of three changes between two suns one is found. What is found is off by
-//! `edge_seconds` at most.
+//! What is missed: light or shade that begins and ends between two neighbouring positions, so anything shorter than `1/(N - 1)` of
+//! the path may be missed; and of three changes between two positions one is found. Edges that are found are off by at most
+//! `edge_seconds`.
 
-use super::probe::{Probe, Side};
+use super::probe::{Probe, SurfaceSide};
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
 use crate::trace::{Direction, Occluder, Tracer};
 use glam::DVec3;
 
-/// The finest edge in `t`: steps of an `f64` are ten thousand times smaller, so halving always ends.
+/// Least width of an edge in `t`: the spacing of `f64` is ten thousand times smaller, so bisection always ends.
 const FINEST_T: f64 = 1e-12;
 
 /// N evenly spaced suns, and bisection between those that differ.
@@ -27,17 +27,17 @@ pub struct BisectEngine<'a> {
     tracer: &'a Tracer,
     count: usize,
     edge_seconds: f64,
-    lanes: Vec<Lane>,
+    lanes: Vec<BisectLane>,
 }
 
-/// A path, and what does not depend on the point.
-struct Lane {
+/// A path, and everything that does not depend on the point.
+struct BisectLane {
     path: SunPath,
     above_horizon: Intervals,
     /// The coarse suns, evenly spaced from t = 0 to t = 1.
     suns: Vec<Direction>,
-    /// How far apart, in `t`, both sides of an edge may stay.
-    apart_t: f64,
+    /// Width of an edge, in `t`, at which bisection stops.
+    edge_width_t: f64,
 }
 
 impl<'a> BisectEngine<'a> {
@@ -45,34 +45,34 @@ impl<'a> BisectEngine<'a> {
     /// path's clock; halving it costs every edge one ray more.
     pub fn new(tracer: &'a Tracer, lanes: &[SunPath], count: usize, edge_seconds: f64) -> Self {
         let count = count.max(2);
-        let lanes = lanes.iter().map(|path| Lane::new(path, count, edge_seconds)).collect();
+        let lanes = lanes.iter().map(|path| BisectLane::new(path, count, edge_seconds)).collect();
         Self { tracer, count, edge_seconds, lanes }
     }
 }
 
-impl Lane {
+impl BisectLane {
     fn new(path: &SunPath, count: usize, edge_seconds: f64) -> Self {
         let sun = |step| Direction::new(path.direction(step as f64 / (count - 1) as f64));
         Self {
             above_horizon: path.above_horizon(DVec3::Y),
             suns: (0..count).map(sun).collect(),
-            apart_t: (2.0 * edge_seconds / (60.0 * path.duration_min)).max(FINEST_T),
+            edge_width_t: (2.0 * edge_seconds / (60.0 * path.duration_min)).max(FINEST_T),
             path: path.clone(),
         }
     }
 
-    /// When the sun is up and counts, and on which side of the point it then is.
-    fn spells(&self, point: &SurfacePoint) -> Vec<([f64; 2], Side)> {
+    /// Spans in which the sun is above the horizon and in front of a side of the point, with that side.
+    fn spans(&self, point: &SurfacePoint) -> Vec<([f64; 2], SurfaceSide)> {
         let before = self.path.above_plane(point.normal);
         let of_side = |when: &Intervals, side| {
             let up = when.intersection(&self.above_horizon);
-            up.as_slice().iter().map(|&spell| (spell, side)).collect::<Vec<_>>()
+            up.as_slice().iter().map(|&span| (span, side)).collect::<Vec<_>>()
         };
-        let mut spells = of_side(&before, Side::Front);
+        let mut spans = of_side(&before, SurfaceSide::Front);
         if point.is_double_sided {
-            spells.extend(of_side(&gaps(&before), Side::Back));
+            spans.extend(of_side(&gaps(&before), SurfaceSide::Back));
         }
-        spells
+        spans
     }
 
     /// Towards the sun as `t` is reached: where arcs do not quite meet, the end of the one before.
@@ -87,7 +87,7 @@ impl Lane {
     }
 }
 
-/// What of the path some intervals leave free.
+/// The rest of the path.
 fn gaps(intervals: &Intervals) -> Intervals {
     let ends = intervals.as_slice();
     let starts = std::iter::once(0.0).chain(ends.iter().map(|i| i[1]));
@@ -123,7 +123,7 @@ impl Session for BisectSession<'_> {
             let probe = Probe::new(engine.tracer, point);
             for (lane, last_occluder) in engine.lanes.iter().zip(&mut self.last_occluder) {
                 let mut search = Search { lane, probe: &probe, last_occluder, rays: &mut self.rays, lit: Vec::new() };
-                lane.spells(point).into_iter().for_each(|(spell, side)| search.spell(spell, side));
+                lane.spans(point).into_iter().for_each(|(span, side)| search.span(span, side));
                 answers.push(&Intervals::from_unsorted(search.lit));
             }
         }
@@ -136,29 +136,29 @@ impl Session for BisectSession<'_> {
 
 /// One point along one lane.
 struct Search<'a> {
-    lane: &'a Lane,
+    lane: &'a BisectLane,
     probe: &'a Probe<'a>,
     last_occluder: &'a mut [Option<Occluder>],
     rays: &'a mut u64,
     lit: Vec<[f64; 2]>,
 }
 
-/// What is known of a moment: nothing hides the sun, or this does.
+/// A moment, and what occludes the sun then, if anything does.
 #[derive(Clone, Copy)]
-struct Known {
+struct Sample {
     t: f64,
     occluder: Option<Occluder>,
 }
 
-impl Known {
+impl Sample {
     fn is_lit(&self) -> bool {
         self.occluder.is_none()
     }
 }
 
 impl Search<'_> {
-    /// Finds the light within a spell.
-    fn spell(&mut self, [first_t, last_t]: [f64; 2], side: Side) {
+    /// Finds the lit intervals within a span.
+    fn span(&mut self, [first_t, last_t]: [f64; 2], side: SurfaceSide) {
         let step_t = self.lane.step_t();
         let inside = (first_t / step_t) as usize + 1..(last_t / step_t).ceil() as usize;
         let first_sun = self.lane.path.direction(first_t);
@@ -174,8 +174,8 @@ impl Search<'_> {
         self.lit.extend(lit_since.map(|since| [since, last_t]));
     }
 
-    /// From one moment to the next: keeps the light that ended between them, and tells since when there is light.
-    fn advance(&mut self, before: Known, now: Known, lit_since: Option<f64>, side: Side) -> Option<f64> {
+    /// From one moment to the next: adds the lit interval that ended between them, and gives the start of the current one.
+    fn advance(&mut self, before: Sample, now: Sample, lit_since: Option<f64>, side: SurfaceSide) -> Option<f64> {
         if before.is_lit() == now.is_lit() {
             return lit_since;
         }
@@ -185,35 +185,36 @@ impl Search<'_> {
     }
 
     /// The edge between a moment that is lit and one that is not.
-    fn edge_t(&mut self, mut low: Known, mut high: Known, side: Side) -> f64 {
-        while high.t - low.t > self.lane.apart_t {
+    fn edge_t(&mut self, mut low: Sample, mut high: Sample, side: SurfaceSide) -> f64 {
+        while high.t - low.t > self.lane.edge_width_t {
             let t = 0.5 * (low.t + high.t);
             let sun = Direction::new(self.lane.path.direction(t));
-            let middle = self.ask(t, side, &sun, [low.occluder.or(high.occluder), None]);
+            let middle = self.trace(t, side, &sun, [low.occluder.or(high.occluder), None]);
             let end = if middle.is_lit() == low.is_lit() { &mut low } else { &mut high };
             *end = middle;
         }
         0.5 * (low.t + high.t)
     }
 
-    fn coarse(&mut self, step: usize, side: Side, before: Option<Occluder>) -> Known {
+    fn coarse(&mut self, step: usize, side: SurfaceSide, before: Option<Occluder>) -> Sample {
         let lane = self.lane;
-        let known = self.ask(step as f64 * lane.step_t(), side, &lane.suns[step], [self.last_occluder[step], before]);
-        if !known.is_lit() {
-            self.last_occluder[step] = known.occluder;
+        let sample =
+            self.trace(step as f64 * lane.step_t(), side, &lane.suns[step], [self.last_occluder[step], before]);
+        if !sample.is_lit() {
+            self.last_occluder[step] = sample.occluder;
         }
-        known
+        sample
     }
 
-    /// The end of a spell. It has no memory of its own, and takes that of the coarse sun next to it.
-    fn end(&mut self, t: f64, sun: DVec3, side: Side, before: Option<Occluder>) -> Known {
+    /// The end of a span. It uses the last occluder of the coarse position next to it.
+    fn end(&mut self, t: f64, sun: DVec3, side: SurfaceSide, before: Option<Occluder>) -> Sample {
         let sun = Direction::new(sun);
         let beside = (t / self.lane.step_t()).round() as usize;
-        self.ask(t, side, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
+        self.trace(t, side, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
     }
 
-    fn ask(&mut self, t: f64, side: Side, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Known {
+    fn trace(&mut self, t: f64, side: SurfaceSide, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Sample {
         *self.rays += 1;
-        Known { t, occluder: self.probe.occluder(side, sun, guesses) }
+        Sample { t, occluder: self.probe.occluder(side, sun, guesses) }
     }
 }

@@ -1,9 +1,8 @@
-//! When each surface point sees the sun.
+//! Lit intervals: when each surface point sees the sun or a lamp.
 //!
 //! `V(x, t)` is 1 where the sun's centre is above the world horizon, above the surface's plane, and not occluded. An
-//! [`Engine`] answers with all lit intervals of a point at once. A double-sided surface is asked about from whichever
-//! side the sun is on, so one list serves both of its faces: at any moment the sun stands before just one of them, and
-//! the run time knows which.
+//! [`Engine`] finds all lit intervals of a point at once. For a double-sided surface, rays start on the side that faces the sun.
+//! So one list serves both of its faces: at any moment the sun is in front of exactly one of them, and the runtime knows which.
 
 mod bisect;
 mod exact;
@@ -26,17 +25,17 @@ pub trait Engine: Sync {
     /// Its name with its parameters, as on the command line.
     fn name(&self) -> String;
 
-    /// How many paths it answers for.
+    /// How many paths it finds intervals for.
     fn lane_count(&self) -> usize;
 
-    /// Starts on a run of neighbouring points. What a session learns from one point it may use for the next, so long as
-    /// no answer depends on it: the same point has the same answer in any session.
+    /// Starts a run of neighbouring points. A session may reuse what it found at one point for the next, as long as no answer
+    /// depends on it: the same point has the same answer in any session.
     fn session(&self) -> Box<dyn Session + '_>;
 }
 
-/// An engine at work on neighbouring points.
+/// A run of an engine over neighbouring points.
 pub trait Session {
-    /// Adds when each point sees the sun, in the order of the points; for each point one answer a lane.
+    /// Adds the lit intervals of each point, in the order of the points; for each point one list a lane.
     fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable);
 
     /// Work done since the session started.
@@ -48,9 +47,9 @@ pub trait Session {
 pub struct Work {
     /// Rays traced.
     pub rays: u64,
-    /// Hierarchy nodes met.
+    /// Hierarchy nodes visited.
     pub nodes: u64,
-    /// Triangles met.
+    /// Triangles tested.
     pub triangles: u64,
 }
 
@@ -66,7 +65,7 @@ impl std::ops::Add for Work {
     }
 }
 
-/// When one point sees the sun, along each of the engine's lanes.
+/// Lit intervals of one point, along each of the engine's lanes.
 pub fn lit_at(engine: &dyn Engine, point: &SurfacePoint) -> Vec<Intervals> {
     let mut answers = IntervalTable::default();
     engine.session().lit(std::slice::from_ref(point), &mut answers);
@@ -76,8 +75,8 @@ pub fn lit_at(engine: &dyn Engine, point: &SurfacePoint) -> Vec<Intervals> {
 /// How many neighbouring points a session is given.
 const RUN: usize = 1024;
 
-/// Asks an engine about every point, on all threads of the current pool; answers come in the order of the points, of each
-/// point one for each of the engine's lanes.
+/// Finds the lit intervals of every point, on all threads of the current pool. Answers come in the order of the points; for each
+/// point one list for each of the engine's lanes.
 /// `on_progress` gets the number of points that were done and returns false to stop; then there is no answer.
 pub fn solve_visibility(
     engine: &dyn Engine,

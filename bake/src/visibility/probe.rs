@@ -1,4 +1,4 @@
-//! Rays from one point towards single suns: what the engines that trace rays share.
+//! Rays from one point towards single positions of the sun, shared by the engines that trace rays.
 
 use crate::atlas::SurfacePoint;
 use crate::trace::{Direction, Occluder, Tracer};
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// A side of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum SurfaceSide {
     Front,
     Back,
 }
@@ -23,23 +23,23 @@ impl<'a> Probe<'a> {
         Self { tracer, origins: sides.map(|side| tracer.lift(point.position_m, side, point.triangle)) }
     }
 
-    /// What hides a sun from a side, if anything does. Each guess is tried before the hierarchy is walked.
+    /// What occludes the sun from a side, if anything does. The guesses are tested before the hierarchy is walked.
     #[inline]
-    pub fn occluder(&self, side: Side, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Option<Occluder> {
+    pub fn occluder(&self, side: SurfaceSide, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Option<Occluder> {
         let origin = self.origins[side as usize];
-        let hides = |guess: &Occluder| self.tracer.is_occluded_by(*guess, origin, sun);
-        let guessed = guesses.into_iter().flatten().find(hides);
+        let occludes = |guess: &Occluder| self.tracer.is_occluded_by(*guess, origin, sun);
+        let guessed = guesses.into_iter().flatten().find(occludes);
         guessed.or_else(|| self.tracer.occluder(origin, sun))
     }
 }
 
-/// The side of a point from which a sun counts, if it does.
+/// The side of a point that faces the sun; none where a single-sided surface faces away.
 #[inline]
-pub(super) fn side_towards(point: &SurfacePoint, sun: DVec3) -> Option<Side> {
+pub(super) fn side_towards(point: &SurfacePoint, sun: DVec3) -> Option<SurfaceSide> {
     let above = point.normal.dot(sun);
     match above {
-        above if above > 0.0 => Some(Side::Front),
-        above if above < 0.0 && point.is_double_sided => Some(Side::Back),
+        above if above > 0.0 => Some(SurfaceSide::Front),
+        above if above < 0.0 && point.is_double_sided => Some(SurfaceSide::Back),
         _ => None,
     }
 }

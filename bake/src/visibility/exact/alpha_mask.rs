@@ -1,10 +1,10 @@
-//! Which part of a hidden span a triangle with holes really hides.
+//! Which part of an occluded span an alpha-masked triangle really occludes.
 //!
 //! **Theory.** While the sun moves, the point where its ray pierces the triangle runs along a curve, and the texture
 //! coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of the edge normals with the direction.
 //! With `s = tan(h / 2)` a direction is `(1 - s^2, 2 s, 1 + s^2)`, less a factor that falls out, so coordinates are quotients
 //! of quadratics in s, `U / W` and `V / W`. A border between two columns of texels is crossed where `U - k W = 0`: again known
-//! in closed form. So the curve is followed from texel to texel, and none is skipped but in its first microseconds. Squares of
+//! in closed form. So the curve is followed from texel to texel, and none is skipped except within its first microseconds. Squares of
 //! texels that are solid or clear throughout are crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of
 //! a half space.
 //!
@@ -17,23 +17,23 @@ use crate::trace::MaskedTriangle;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// A triangle with holes, seen from a point along one lane.
-pub(super) struct Pierced<'a> {
-    pub cut: MaskedTriangle<'a>,
+/// An alpha-masked triangle, seen from a point along one lane.
+pub(super) struct MaskedTriangleView<'a> {
+    pub mask: MaskedTriangle<'a>,
     /// Which triangle of a packet it is, and along which lane it is seen.
     pub slot: usize,
     pub lane: usize,
     /// For each corner, the normal of the opposite edge with the declination worked in: its product with (cos h, sin h, 1)
-    /// is the corner's weight. Where the triangle is pierced all have one sign, the positive one after [`Pierced::side`].
+    /// is the corner's weight. Where the triangle is pierced all have one sign, the positive one after [`MaskedTriangleView::side`].
     weights: [DVec3; 3],
     /// The weights' sums, weighted by each texture coordinate, and their plain sum.
     sums: [DVec3; 3],
 }
 
-impl<'a> Pierced<'a> {
+impl<'a> MaskedTriangleView<'a> {
     /// From the corners relative to the point, arc frame.
     pub fn new(
-        cut: MaskedTriangle<'a>,
+        mask: MaskedTriangle<'a>,
         [slot, lane]: [usize; 2],
         [a, b, c]: [DVec3; 3],
         declination: Declination,
@@ -42,8 +42,8 @@ impl<'a> Pierced<'a> {
         let scale = DVec3::new(declination.cos, declination.cos, declination.sin);
         let weights = normals.map(|n| n * scale);
         let blend = |values: [f64; 3]| weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2];
-        let sums = [cut.texel_uvs.map(|uv| uv.x), cut.texel_uvs.map(|uv| uv.y), [1.0; 3]].map(blend);
-        Self { cut, slot, lane, weights, sums }
+        let sums = [mask.texel_uvs.map(|uv| uv.x), mask.texel_uvs.map(|uv| uv.y), [1.0; 3]].map(blend);
+        Self { mask, slot, lane, weights, sums }
     }
 
     /// 1 if weights are positive on a span on which the triangle is pierced, else -1. It depends on the side that the triangle
@@ -89,8 +89,8 @@ impl<'a> Pierced<'a> {
 
     /// Adds what is solid of a span that lies in one texel.
     pub fn solid_in_texel(&self, texel: [i64; 2], side: f64, [start, end]: [f64; 2], mut add: impl FnMut([f64; 2])) {
-        let alpha = self.cut.alpha_of(texel);
-        let [a, b, c] = self.cut.alphas.map(|own| (own * alpha - self.cut.cutoff) * side);
+        let alpha = self.mask.alpha_of(texel);
+        let [a, b, c] = self.mask.alphas.map(|own| (own * alpha - self.mask.cutoff) * side);
         let n = self.weights[0] * a + self.weights[1] * b + self.weights[2] * c;
         half_space(n.x, n.y, n.z).as_slice().iter().for_each(|span| add([span[0].max(start), span[1].min(end)]));
     }
@@ -101,7 +101,7 @@ impl<'a> Pierced<'a> {
 pub(super) struct Curve {
     /// Of U, V and W, from the square down; W is positive.
     pub quadratics: [[f64; 3]; 3],
-    /// What made it so: see [`Pierced::side`].
+    /// What made it so: see [`MaskedTriangleView::side`].
     pub side: f64,
     /// Diamond angle at which s is 0.
     middle: f64,
@@ -147,7 +147,7 @@ fn turning([u2, u1, u0]: [f64; 3], [w2, w1, w0]: [f64; 3]) -> [f64; 3] {
     [u2 * w1 - u1 * w2, 2.0 * (u2 * w0 - u0 * w2), u1 * w0 - u0 * w1]
 }
 
-/// Roots of a quadratic, in a way that loses no digits. Those that there are not are not finite.
+/// Roots of a quadratic, without cancellation. Roots that do not exist are not finite.
 fn roots([a, b, c]: [f64; 3]) -> [f64; 2] {
     let d = b * b - 4.0 * a * c;
     let q = -0.5 * (b + d.sqrt().copysign(b));
@@ -173,12 +173,12 @@ mod tests {
     /// A triangle across the sun's way that is solid, by its corners' alphas, on one side: that side is solid whether it lies
     /// ahead or behind, as it may within the run-up of rays.
     #[test]
-    fn what_is_solid_does_not_depend_on_the_way_that_weights_turn() {
+    fn the_solid_part_does_not_depend_on_the_sign_of_the_weights() {
         let equator = Declination { cos: 1.0, sin: 0.0 };
         for ahead in [1.0, -1.0] {
             let corners = [(-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0)].map(|(y, z)| DVec3::new(ahead, y, z));
-            let cut = MaskedTriangle::of_alphas([0.0, 1.0, 0.0], 0.25);
-            let pierced = Pierced::new(cut, [0, 0], corners, equator);
+            let mask = MaskedTriangle::of_alphas([0.0, 1.0, 0.0], 0.25);
+            let pierced = MaskedTriangleView::new(mask, [0, 0], corners, equator);
             let span = [-0.4, 0.4];
             let mut solid = Vec::new();
             pierced.solid_in_texel([0, 0], pierced.side(span), span, |span| solid.push(span));

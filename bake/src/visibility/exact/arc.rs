@@ -122,7 +122,7 @@ pub(super) fn half_space(a: f64, b: f64, c: f64) -> HalfSpace {
     let d = r2 - c * c;
     let is_part = d > 0.0;
     if !is_part {
-        // Of what is not a number, nothing.
+        // NaN yields no span.
         return if c >= 0.0 { HalfSpace::of(&[[-2.0, 2.0]]) } else { HalfSpace::of(&[]) };
     }
     let w = d.sqrt();

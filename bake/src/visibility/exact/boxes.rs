@@ -1,9 +1,9 @@
-//! Sixteen boxes, or sixteen triangles, at once against the suns of an arc that are still wanted. Conservative, in `f32`.
+//! Sixteen boxes, or sixteen triangles, at once against the spans of an arc that are still lit. Conservative, in `f32`.
 //!
 //! From one point the suns of an arc lie on a cone about the frame's z axis, and those of a span of hour angle in a wedge
-//! whose edge is that axis. What is asked of a box, and of a triangle's corners, is whether it lies
+//! whose edge is that axis. A box, or a triangle by its corners, is skipped if it lies
 //!
-//! * beyond a side of every wanted wedge: a product with a plane's normal tells, and no angle is needed. A wedge of more than half a
+//! * beyond a side of every lit wedge: a product with a plane's normal tells, and no angle is needed. A wedge of more than half a
 //!   turn is missed by what lies beyond both of its sides;
 //! * above or below the cone (with several lanes, the shell between two): the space inside a cone is convex, so that a
 //!   triangle whose corners lie inside does not reach it. From outside, a plane through the apex that keeps the cone on its
@@ -21,24 +21,24 @@ use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;
 
-/// Most spans that are told apart; more are joined.
+/// Most spans that are kept apart; more are joined.
 const MOST_SPANS: usize = 8;
-/// Spans are told apart if they are at least this far from each other, in diamond angle: about a degree.
+/// Spans are kept apart if they are at least this far from each other, in diamond angle: about a degree.
 const LEAST_SLIT: f32 = 0.02;
 /// Growth of spans of diamond angle: a few steps of an `f32` near 2.
 const ANGLE_PADDING: f32 = 2e-6;
-/// What squared distances from the axis are relaxed by, as a share.
+/// Relative relaxation of squared distances from the axis.
 const CONE_SLACK: f32 = 4e-6;
 
-/// What a walk looks for.
+/// The spans that are still lit, as a walk tests boxes against them.
 #[derive(Default)]
-pub(super) struct Wanted {
+pub(super) struct LitSpans {
     /// The point, axes of the boxes.
     centre: [f32; 3],
     arc_from_box: [[f32; 3]; 3],
     /// Whether the boxes' axes are the arc's.
     is_aligned: bool,
-    /// Way that the surface faces, arc frame: what lies behind it is passed over.
+    /// Direction that the surface faces, arc frame: what lies behind it is skipped.
     side: [f32; 3],
     padding: f32,
     /// Cosine and sine of the least declination and of the greatest.
@@ -57,8 +57,8 @@ struct Wedge {
     is_wide: bool,
 }
 
-/// Frames that a walk is about: where the boxes' axes and the arc's lie.
-pub(super) struct Frames {
+/// The axes of the boxes relative to those of the arc.
+pub(super) struct BoxFrames {
     box_from_arc: DMat3,
     arc_from_box: [[f32; 3]; 3],
     is_aligned: bool,
@@ -67,7 +67,7 @@ pub(super) struct Frames {
     padding: f32,
 }
 
-impl Frames {
+impl BoxFrames {
     /// For an arc's frame, over boxes of given axes that are grown by `padding`.
     pub fn new(arc: &ArcFrame, box_from_tracer: DMat3, padding: f32) -> Self {
         let by_sine = |a: &&Declination, b: &&Declination| a.sin.total_cmp(&b.sin);
@@ -83,20 +83,20 @@ impl Frames {
     }
 }
 
-impl Wanted {
-    /// Looks from a query's point for what hides any of its gaps.
-    pub fn look_from(&mut self, frames: &Frames, query: &Query) {
+impl LitSpans {
+    /// Takes the point and the gaps of a query.
+    pub fn start(&mut self, frames: &BoxFrames, query: &Query) {
         self.centre = (frames.box_from_arc * query.origin).as_vec3().to_array();
         self.arc_from_box = frames.arc_from_box;
         self.is_aligned = frames.is_aligned;
         self.side = query.side.as_vec3().to_array();
         self.padding = frames.padding;
         self.shell = frames.shell;
-        self.want(query);
+        self.update(query);
     }
 
-    /// Looks for what is open now.
-    pub fn want(&mut self, query: &Query) {
+    /// Takes the gaps that are open now.
+    pub fn update(&mut self, query: &Query) {
         let Self { spans, wedges, .. } = self;
         spans.clear();
         for gaps in &query.gaps {
@@ -128,27 +128,27 @@ impl Wedge {
 }
 
 /// Which of a node's boxes are met: a bit set. `near2` gets their least squared distance from the axis.
-pub(super) fn node_met<S: Simd>(simd: S, node: &Bvh16Node, wanted: &Wanted, near2: &mut [f32; 16]) -> u32 {
+pub(super) fn node_met<S: Simd>(simd: S, node: &Bvh16Node, lit: &LitSpans, near2: &mut [f32; 16]) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
-            let boxes = turned(simd, node, wanted);
-            let (met, near) = met(simd, &boxes, wanted);
+            let boxes = turned(simd, node, lit);
+            let (met, near) = met(simd, &boxes, lit);
             near.store_slice(near2);
             met.to_bitmask() as u32 & first_lanes(node.count)
         },
     )
 }
 
-/// Which triangles of a leaf may hide something wanted: a bit set.
-pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, wanted: &Wanted) -> u32 {
+/// Which triangles of a leaf may occlude something lit: a bit set.
+pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, lit: &LitSpans) -> u32 {
     simd.vectorize(
         #[inline(always)]
         || {
-            let a = corner(simd, &leaf.corners[0], wanted);
-            let b = corner(simd, &leaf.corners[1], wanted);
-            let c = corner(simd, &leaf.corners[2], wanted);
-            triangles_met(simd, [a, b, c], wanted).to_bitmask() as u32 & first_lanes(leaf.count)
+            let a = corner(simd, &leaf.corners[0], lit);
+            let b = corner(simd, &leaf.corners[1], lit);
+            let c = corner(simd, &leaf.corners[2], lit);
+            triangles_met(simd, [a, b, c], lit).to_bitmask() as u32 & first_lanes(leaf.count)
         },
     )
 }
@@ -161,18 +161,18 @@ struct Boxes<S: Simd> {
 
 /// A node's boxes in the arc's frame.
 #[inline(always)]
-fn turned<S: Simd>(simd: S, node: &Bvh16Node, wanted: &Wanted) -> Boxes<S> {
-    let x = f32x16::from_slice(simd, &node.centre[0]) - wanted.centre[0];
-    let y = f32x16::from_slice(simd, &node.centre[1]) - wanted.centre[1];
-    let z = f32x16::from_slice(simd, &node.centre[2]) - wanted.centre[2];
+fn turned<S: Simd>(simd: S, node: &Bvh16Node, lit: &LitSpans) -> Boxes<S> {
+    let x = f32x16::from_slice(simd, &node.centre[0]) - lit.centre[0];
+    let y = f32x16::from_slice(simd, &node.centre[1]) - lit.centre[1];
+    let z = f32x16::from_slice(simd, &node.centre[2]) - lit.centre[2];
     let half_x = f32x16::from_slice(simd, &node.half[0]);
     let half_y = f32x16::from_slice(simd, &node.half[1]);
     let half_z = f32x16::from_slice(simd, &node.half[2]);
-    let padding = wanted.padding;
-    if wanted.is_aligned {
+    let padding = lit.padding;
+    if lit.is_aligned {
         return Boxes { centre: [x, y, z], half: [half_x + padding, half_y + padding, half_z + padding] };
     }
-    let [r0, r1, r2] = wanted.arc_from_box;
+    let [r0, r1, r2] = lit.arc_from_box;
     Boxes {
         centre: [row(r0, [x, y, z]), row(r1, [x, y, z]), row(r2, [x, y, z])],
         half: [
@@ -185,14 +185,14 @@ fn turned<S: Simd>(simd: S, node: &Bvh16Node, wanted: &Wanted) -> Boxes<S> {
 
 /// Corners in the arc's frame, relative to the walk's point.
 #[inline(always)]
-fn corner<S: Simd>(simd: S, points: &Points, wanted: &Wanted) -> [f32x16<S>; 3] {
-    let x = f32x16::from_slice(simd, &points[0]) - wanted.centre[0];
-    let y = f32x16::from_slice(simd, &points[1]) - wanted.centre[1];
-    let z = f32x16::from_slice(simd, &points[2]) - wanted.centre[2];
-    if wanted.is_aligned {
+fn corner<S: Simd>(simd: S, points: &Points, lit: &LitSpans) -> [f32x16<S>; 3] {
+    let x = f32x16::from_slice(simd, &points[0]) - lit.centre[0];
+    let y = f32x16::from_slice(simd, &points[1]) - lit.centre[1];
+    let z = f32x16::from_slice(simd, &points[2]) - lit.centre[2];
+    if lit.is_aligned {
         return [x, y, z];
     }
-    let [r0, r1, r2] = wanted.arc_from_box;
+    let [r0, r1, r2] = lit.arc_from_box;
     [row(r0, [x, y, z]), row(r1, [x, y, z]), row(r2, [x, y, z])]
 }
 
@@ -208,24 +208,24 @@ fn row<S: Simd>([a, b, c]: [f32; 3], [x, y, z]: [f32x16<S>; 3]) -> f32x16<S> {
 
 /// Which boxes are met, and their least squared distance from the axis.
 #[inline(always)]
-fn met<S: Simd>(simd: S, boxes: &Boxes<S>, wanted: &Wanted) -> (mask32x16<S>, f32x16<S>) {
+fn met<S: Simd>(simd: S, boxes: &Boxes<S>, lit: &LitSpans) -> (mask32x16<S>, f32x16<S>) {
     let zero = f32x16::splat(simd, 0.0);
     let Boxes { centre: [x, y, z], half: [half_x, half_y, half_z] } = *boxes;
     let (near_x, near_y) = ((x.abs() - half_x).max(zero), (y.abs() - half_y).max(zero));
     let (far_x, far_y) = (x.abs() + half_x, y.abs() + half_y);
     let near2 = near_x * near_x + near_y * near_y;
     let far2 = far_x * far_x + far_y * far_y;
-    let [low, [high_cos, high_sin]] = wanted.shell;
+    let [low, [high_cos, high_sin]] = lit.shell;
     let over_low = reaches_over(simd, z + half_z, [near2, far2], low);
     let under_high = reaches_over(simd, half_z - z, [near2, far2], [high_cos, -high_sin]);
 
     let mut in_wedge = mask32x16::splat(simd, false);
-    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &wanted.wedges {
+    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &lit.wedges {
         let past_start = (y * sx - x * sy + half_y * sx.abs() + half_x * sy.abs()).simd_ge(zero);
         let before_end = (x * ey - y * ex + half_x * ey.abs() + half_y * ex.abs()).simd_ge(zero);
         in_wedge |= if is_wide { past_start | before_end } else { past_start & before_end };
     }
-    let highest = row(wanted.side, [x, y, z]) + row(abs(wanted.side), [half_x, half_y, half_z]);
+    let highest = row(lit.side, [x, y, z]) + row(abs(lit.side), [half_x, half_y, half_z]);
     (over_low & under_high & in_wedge & highest.simd_ge(zero), near2)
 }
 
@@ -242,16 +242,16 @@ fn reaches_over<S: Simd>(simd: S, z: f32x16<S>, [near2, far2]: [f32x16<S>; 2], [
 
 /// Which triangles may be met.
 #[inline(always)]
-fn triangles_met<S: Simd>(simd: S, [a, b, c]: [[f32x16<S>; 3]; 3], wanted: &Wanted) -> mask32x16<S> {
-    let tiny = f32x16::splat(simd, -wanted.padding);
+fn triangles_met<S: Simd>(simd: S, [a, b, c]: [[f32x16<S>; 3]; 3], lit: &LitSpans) -> mask32x16<S> {
+    let tiny = f32x16::splat(simd, -lit.padding);
     let mut in_wedge = mask32x16::splat(simd, false);
-    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &wanted.wedges {
+    for &Wedge { start: [sx, sy], end: [ex, ey], is_wide } in &lit.wedges {
         let from_start = (a[1] * sx - a[0] * sy).max(b[1] * sx - b[0] * sy).max(c[1] * sx - c[0] * sy);
         let to_end = (a[0] * ey - a[1] * ex).max(b[0] * ey - b[1] * ex).max(c[0] * ey - c[1] * ex);
         let (past_start, before_end) = (from_start.simd_ge(tiny), to_end.simd_ge(tiny));
         in_wedge |= if is_wide { past_start | before_end } else { past_start & before_end };
     }
-    let highest = row(wanted.side, a).max(row(wanted.side, b)).max(row(wanted.side, c));
+    let highest = row(lit.side, a).max(row(lit.side, b)).max(row(lit.side, c));
 
     let ahead = in_wedge & highest.simd_ge(tiny);
     if ahead.to_bitmask() == 0 {
@@ -261,10 +261,10 @@ fn triangles_met<S: Simd>(simd: S, [a, b, c]: [[f32x16<S>; 3]; 3], wanted: &Want
     // Towards the triangle's middle across the axis, and how long that is.
     let (x, y) = (a[0] + b[0] + c[0], a[1] + b[1] + c[1]);
     let middle = [x, y, (x * x + y * y).sqrt()];
-    let [[low_cos, low_sin], high] = wanted.shell;
-    let is_above = lies_above(simd, [a, b, c], middle, high, wanted.padding);
+    let [[low_cos, low_sin], high] = lit.shell;
+    let is_above = lies_above(simd, [a, b, c], middle, high, lit.padding);
     let upside_down = [[a[0], a[1], -a[2]], [b[0], b[1], -b[2]], [c[0], c[1], -c[2]]];
-    let is_below = lies_above(simd, upside_down, middle, [low_cos, -low_sin], wanted.padding);
+    let is_below = lies_above(simd, upside_down, middle, [low_cos, -low_sin], lit.padding);
     ahead & !(is_above | is_below)
 }
 

@@ -1,21 +1,21 @@
 //! Closing a query's gaps with triangles, eight at a time.
 
-use super::alpha_mask::Pierced;
+use super::alpha_mask::MaskedTriangleView;
 use super::arc::ArcFrame;
-use super::follow::{Follower, Solid};
+use super::follow::{Follower, SolidSpan};
 use super::gaps::Gaps;
 use super::near::hidden_near;
-use super::seeds::Seeds;
-use super::solve::{Hidden, Packet, hide};
+use super::seeds::SeedPackets;
+use super::solve::{HiddenSpans, Packet, hide};
 use crate::trace::Tracer;
 use crate::trace::bvh16::bits;
 use fearless_simd::Simd;
 use glam::DVec3;
 
-/// What is solid of a mask for a shorter time than this, in diamond angle, is rounding's: a corner that is just touched.
+/// Solid spans of a mask that are shorter than this, in diamond angle, are due to rounding: a corner that is just touched.
 const LEAST_SOLID: f64 = 1e-10;
 
-/// A point, one of its sides, and what of the arc is still lit there.
+/// A point, one of its sides, and the spans of the arc that are still lit there.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Query {
     /// Where its rays start, arc frame.
@@ -32,45 +32,45 @@ impl Query {
     }
 }
 
-/// What it takes to close gaps on one arc, and the triangles to try first.
-pub(super) struct Coverer<'a> {
+/// Closes gaps on one arc, and keeps the triangles to test first.
+pub(super) struct GapCloser<'a> {
     pub tracer: &'a Tracer,
     frame: &'a ArcFrame,
-    /// What was of use at the point before: solid triangles, and those with holes.
-    seeds: [Seeds; 2],
-    /// What is of use at this point.
-    next_seeds: [Seeds; 2],
-    /// Room for one answer a lane, and for what has holes.
-    hidden: Vec<Hidden>,
+    /// Triangles that closed gaps at the previous point: solid ones, and alpha-masked ones.
+    seeds: [SeedPackets; 2],
+    /// Triangles that close gaps at this point.
+    next_seeds: [SeedPackets; 2],
+    /// Memory for one answer a lane.
+    hidden: Vec<HiddenSpans>,
     follower: Follower<'a>,
 }
 
-impl<'a> Coverer<'a> {
+impl<'a> GapCloser<'a> {
     pub fn new(tracer: &'a Tracer, frame: &'a ArcFrame) -> Self {
         Self {
             tracer,
             frame,
             seeds: Default::default(),
             next_seeds: Default::default(),
-            hidden: vec![Hidden::default(); frame.lanes.len()],
+            hidden: vec![HiddenSpans::default(); frame.lanes.len()],
             follower: Follower::default(),
         }
     }
 
-    /// Turns the triangles of a packet into the arc's frame and closes what they hide; whether they do.
+    /// Rotates the triangles of a packet into the arc's frame and closes what they occlude. True if they close anything.
     pub fn turn_and_close<S: Simd>(&mut self, simd: S, packet: &mut Packet, query: &mut Query) -> bool {
         packet.turn(simd, &self.frame.arc_from_bake);
         self.close(simd, packet, query)
     }
 
-    /// Closes what was of use at the point before: solid triangles, then those with holes, which cost more. Returns how many
-    /// were looked at.
+    /// Closes gaps with the triangles of the previous point: solid ones, then alpha-masked ones, which cost more. Returns how many
+    /// were tested.
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
         std::mem::swap(&mut self.seeds, &mut self.next_seeds);
-        self.next_seeds.iter_mut().for_each(Seeds::clear);
+        self.next_seeds.iter_mut().for_each(SeedPackets::clear);
         let seeds = std::mem::take(&mut self.seeds);
         let mut triangles = 0;
-        for packet in seeds.iter().flat_map(Seeds::packets) {
+        for packet in seeds.iter().flat_map(SeedPackets::packets) {
             triangles += packet.count as u64;
             if self.close(simd, packet, query) && query.is_done() {
                 break;
@@ -80,7 +80,7 @@ impl<'a> Coverer<'a> {
         triangles
     }
 
-    /// Closes what some triangles hide, and notes which did; whether any.
+    /// Closes what some triangles occlude, and keeps those that closed anything. True if any did.
     pub fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) -> bool {
         let Packet { corners, ids, count } = packet;
         let run_up = self.tracer.run_up();
@@ -105,7 +105,7 @@ impl<'a> Coverer<'a> {
         }
         if !self.follower.is_empty() {
             self.follower.follow();
-            for &Solid { slot, lane, span } in &self.follower.found {
+            for &SolidSpan { slot, lane, span } in &self.follower.found {
                 useful |= u32::from(span[1] - span[0] > LEAST_SOLID && query.gaps[lane].close(span)) << slot;
             }
             self.follower.clear();
@@ -117,11 +117,11 @@ impl<'a> Coverer<'a> {
         useful != 0
     }
 
-    /// Closes what a triangle hides in several spans; one with holes is put down to be followed.
+    /// Closes what a triangle occludes in several spans; an alpha-masked one is added to be followed.
     fn close_pieces(&mut self, packet: &Packet, at: [usize; 2], spans: &[[f64; 2]], query: &mut Query) -> bool {
         let [slot, lane] = at;
         let gaps = &mut query.gaps[lane];
-        let Some(cut) = self.tracer.mask(packet.ids[slot]) else {
+        let Some(mask) = self.tracer.mask(packet.ids[slot]) else {
             return spans.iter().fold(false, |closes, &span| gaps.close(span) | closes);
         };
         let both = |span: &[f64; 2], gap: &[f64; 2]| [span[0].max(gap[0]), span[1].min(gap[1])];
@@ -129,7 +129,7 @@ impl<'a> Coverer<'a> {
         let mut open = open.filter(|span| span[0] < span[1]).peekable();
         if open.peek().is_some() {
             let corners = packet.corners_of(slot).map(|corner| corner - query.origin);
-            self.follower.add(Pierced::new(cut, at, corners, self.frame.lanes[lane]), open);
+            self.follower.add(MaskedTriangleView::new(mask, at, corners, self.frame.lanes[lane]), open);
         }
         false
     }

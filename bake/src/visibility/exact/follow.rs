@@ -1,26 +1,26 @@
-//! Following the sun across textures with holes, a few curves at a time.
+//! Following the sun across alpha masks, a few curves at a time.
 //!
 //! Each curve goes from border to border: two lie ahead, the earlier is crossed, and the texel beyond it (with the square of
 //! equal texels that lies ahead) gives the next two. Where there are two crossings at once either may come first, since the other
 //! follows in a step of no length. A step waits for the one before it, through a root and two quotients, so a few curves
 //! take turns: their steps overlap in the processor.
 
-use super::alpha_mask::{Curve, Pierced, texel_of, value};
+use super::alpha_mask::{Curve, MaskedTriangleView, texel_of, value};
 
-/// Curves that take turns.
-const COURSES: usize = 4;
+/// Curves that are followed in turns.
+const CURVE_WALKS: usize = 4;
 /// How far into a curve its first texel is looked up: some tens of microseconds of a day.
 const LEAST_STEP: f64 = 1e-9;
-/// A crossing that rounding has put up to so far back is taken for one right here.
+/// A crossing that rounding has moved back by up to this much counts as one at the current place.
 const ROUNDING: f64 = 1e-7;
 /// How far outside its square a coordinate may be for rounding's sake, in texels.
 const TEXEL_ROUNDING: f64 = 1e-6;
-/// After so many steps on one curve the rest is covered in as many: texture coordinates may tile without bound.
+/// After this many steps on one curve, the rest is covered in as many: texture coordinates may repeat without bound.
 const MOST_STEPS: u32 = 65_536;
 
-/// What a triangle hides for sure.
+/// A span that a triangle occludes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Solid {
+pub(super) struct SolidSpan {
     pub slot: usize,
     pub lane: usize,
     pub span: [f64; 2],
@@ -29,16 +29,16 @@ pub(super) struct Solid {
 /// Curves to be followed, and what was found on them.
 #[derive(Default)]
 pub(super) struct Follower<'a> {
-    pierced: Vec<Pierced<'a>>,
-    /// Each on one of the triangles; the first ones have been taken up.
+    pierced: Vec<MaskedTriangleView<'a>>,
+    /// Each with the index of its triangle; the first `taken` have been started.
     curves: Vec<(usize, Curve)>,
     taken: usize,
-    pub found: Vec<Solid>,
+    pub found: Vec<SolidSpan>,
 }
 
 /// One curve being followed.
 #[derive(Clone, Copy)]
-struct Course {
+struct CurveWalk {
     /// Its index.
     curve: usize,
     /// How far along it.
@@ -56,16 +56,16 @@ struct Course {
 
 impl<'a> Follower<'a> {
     /// Adds the spans of diamond angle on which a triangle is pierced.
-    pub fn add(&mut self, pierced: Pierced<'a>, spans: impl Iterator<Item = [f64; 2]>) {
+    pub fn add(&mut self, pierced: MaskedTriangleView<'a>, spans: impl Iterator<Item = [f64; 2]>) {
         let index = self.pierced.len();
         for span in spans {
-            if pierced.cut.has_texture() {
+            if pierced.mask.has_texture() {
                 pierced.curves(span, |curve| self.curves.push((index, curve)));
                 continue;
             }
-            let Pierced { slot, lane, .. } = pierced;
-            let mut add = |span| self.found.push(Solid { slot, lane, span });
-            match pierced.cut.uniform([0, 0]).1 {
+            let MaskedTriangleView { slot, lane, .. } = pierced;
+            let mut add = |span| self.found.push(SolidSpan { slot, lane, span });
+            match pierced.mask.uniform([0, 0]).1 {
                 Some(true) => add(span),
                 Some(false) => {}
                 None => pierced.solid_in_texel([0, 0], pierced.side(span), span, add),
@@ -79,7 +79,7 @@ impl<'a> Follower<'a> {
         self.pierced.is_empty()
     }
 
-    /// Forgets what was followed and found.
+    /// Removes all curves and spans.
     pub fn clear(&mut self) {
         self.pierced.clear();
         self.curves.clear();
@@ -89,22 +89,22 @@ impl<'a> Follower<'a> {
 
     /// Follows all curves to their ends.
     pub fn follow(&mut self) {
-        let mut courses = [None; COURSES];
-        courses.iter_mut().for_each(|course| *course = self.start());
-        while courses.iter().any(Option::is_some) {
-            for course in &mut courses {
-                if course.as_mut().is_some_and(|running| !self.step(running)) {
-                    *course = self.start();
+        let mut walks = [None; CURVE_WALKS];
+        walks.iter_mut().for_each(|walk| *walk = self.start());
+        while walks.iter().any(Option::is_some) {
+            for walk in &mut walks {
+                if walk.as_mut().is_some_and(|running| !self.step(running)) {
+                    *walk = self.start();
                 }
             }
         }
     }
 
-    /// Takes up the next curve, if there is one.
-    fn start(&mut self) -> Option<Course> {
+    /// Starts the next curve, if there is one.
+    fn start(&mut self) -> Option<CurveWalk> {
         let (_, curve) = self.curves.get(self.taken)?;
         let [from, to] = curve.ends;
-        let mut course = Course {
+        let mut walk = CurveWalk {
             curve: self.taken,
             at: from,
             texel: curve.texel((from + LEAST_STEP).min(0.5 * (from + to))),
@@ -115,63 +115,63 @@ impl<'a> Follower<'a> {
             least_step: 0.0,
         };
         self.taken += 1;
-        self.enter(&mut course);
-        Some(course)
+        self.enter(&mut walk);
+        Some(walk)
     }
 
-    /// Looks at the texel that a course has come to.
+    /// Evaluates the texel that a walk has come to.
     #[inline]
-    fn enter(&mut self, course: &mut Course) {
-        let (on, curve) = &self.curves[course.curve];
+    fn enter(&mut self, walk: &mut CurveWalk) {
+        let (on, curve) = &self.curves[walk.curve];
         let on = &self.pierced[*on];
-        let (square, verdict) = on.cut.uniform_ahead(course.texel, curve.grows);
-        course.square = square;
-        match (verdict, course.solid_since) {
-            (Some(true), None) => course.solid_since = Some(curve.u_of(course.at)),
+        let (square, verdict) = on.mask.uniform_ahead(walk.texel, curve.grows);
+        walk.square = square;
+        match (verdict, walk.solid_since) {
+            (Some(true), None) => walk.solid_since = Some(curve.u_of(walk.at)),
             (Some(false) | None, Some(since)) => {
-                self.found.push(Solid { slot: on.slot, lane: on.lane, span: [since, curve.u_of(course.at)] });
-                course.solid_since = None;
+                self.found.push(SolidSpan { slot: on.slot, lane: on.lane, span: [since, curve.u_of(walk.at)] });
+                walk.solid_since = None;
             }
             _ => {}
         }
-        course.in_part_since = verdict.is_none().then(|| curve.u_of(course.at));
+        walk.in_part_since = verdict.is_none().then(|| curve.u_of(walk.at));
     }
 
     /// Goes to the next border and over it; false if the curve ends before.
     #[inline]
-    fn step(&mut self, course: &mut Course) -> bool {
-        let (on, curve) = &self.curves[course.curve];
+    fn step(&mut self, walk: &mut CurveWalk) -> bool {
+        let (on, curve) = &self.curves[walk.curve];
         let on = &self.pierced[*on];
-        let crossings = [crossing(curve, 0, course), crossing(curve, 1, course)];
+        let crossings = [crossing(curve, 0, walk), crossing(curve, 1, walk)];
         let axis = usize::from(crossings[0] > crossings[1]);
         let next = crossings[axis].min(curve.ends[1]);
-        if let Some(since) = course.in_part_since {
-            let add = |span| self.found.push(Solid { slot: on.slot, lane: on.lane, span });
-            on.solid_in_texel(course.texel, curve.side, [since, curve.u_of(next)], add);
+        if let Some(since) = walk.in_part_since {
+            let add = |span| self.found.push(SolidSpan { slot: on.slot, lane: on.lane, span });
+            on.solid_in_texel(walk.texel, curve.side, [since, curve.u_of(next)], add);
         }
         if next >= curve.ends[1] {
-            let solid = |since| Solid { slot: on.slot, lane: on.lane, span: [since, curve.ends_u[1]] };
-            self.found.extend(course.solid_since.map(solid));
+            let solid = |since| SolidSpan { slot: on.slot, lane: on.lane, span: [since, curve.ends_u[1]] };
+            self.found.extend(walk.solid_since.map(solid));
             return false;
         }
         let grows = curve.grows[axis];
-        course.texel[axis] = course.square[axis][usize::from(grows)] - i64::from(!grows);
-        let [low, high] = course.square[1 - axis];
+        walk.texel[axis] = walk.square[axis][usize::from(grows)] - i64::from(!grows);
+        let [low, high] = walk.square[1 - axis];
         let along = value(curve.quadratics[1 - axis], next) / value(curve.quadratics[2], next);
         let is_inside = along >= low as f64 - TEXEL_ROUNDING && along <= high as f64 + TEXEL_ROUNDING;
         let beside = texel_of(along);
-        course.texel[1 - axis] = if is_inside { beside.clamp(low, high - 1) } else { beside };
-        course.at = next;
-        course.steps += 1;
-        if course.steps >= MOST_STEPS {
-            course.hurry(curve);
+        walk.texel[1 - axis] = if is_inside { beside.clamp(low, high - 1) } else { beside };
+        walk.at = next;
+        walk.steps += 1;
+        if walk.steps >= MOST_STEPS {
+            walk.hurry(curve);
         }
-        self.enter(course);
+        self.enter(walk);
         true
     }
 }
 
-impl Course {
+impl CurveWalk {
     /// Goes on by the least step after very many.
     #[cold]
     fn hurry(&mut self, curve: &Curve) {
@@ -186,18 +186,18 @@ impl Course {
 /// Where a coordinate next crosses the border of its square in the way that it runs: of both roots of `U - k W`, signed so
 /// that it grows, the one with a positive slope.
 #[inline(always)]
-fn crossing(curve: &Curve, axis: usize, course: &Course) -> f64 {
+fn crossing(curve: &Curve, axis: usize, walk: &CurveWalk) -> f64 {
     let grows = curve.grows[axis];
-    let border = course.square[axis][usize::from(grows)] as f64;
+    let border = walk.square[axis][usize::from(grows)] as f64;
     let sign = if grows { 1.0 } else { -1.0 };
     let [u, w] = [curve.quadratics[axis], curve.quadratics[2]];
     let (a, b, c) = ((u[0] - border * w[0]) * sign, (u[1] - border * w[1]) * sign, (u[2] - border * w[2]) * sign);
     let d = b * b - 4.0 * a * c;
     let root = d.max(0.0).sqrt();
     let s = if b < 0.0 { (root - b) / (2.0 * a) } else { -2.0 * c / (b + root) };
-    // Where it turns within rounding of the border it may be past it from the start. Of what is not a number, nothing.
+    // Where it turns within rounding of the border it may be past it from the start. NaN yields no crossing.
     if d < 0.0 && a > 0.0 {
-        return course.at;
+        return walk.at;
     }
-    if d >= 0.0 && s >= course.at - ROUNDING { s.max(course.at) } else { f64::INFINITY }
+    if d >= 0.0 && s >= walk.at - ROUNDING { s.max(walk.at) } else { f64::INFINITY }
 }

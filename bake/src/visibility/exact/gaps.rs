@@ -1,17 +1,17 @@
-//! What of an arc is still lit: a list of gaps that occluders eat into.
+//! The spans of an arc that are still lit: a list of gaps that occluders close.
 
 /// Gaps narrower than this, in diamond angle, are closed: they last under a hundredth of a millisecond of a day and come
 /// of two occluders that meet without sharing an edge.
 const LEAST_GAP: f64 = 1e-10;
 
-/// Disjoint spans of diamond angle, ascending, none of them empty. Which order occluders come in makes no difference: what
-/// they leave narrower than [`LEAST_GAP`] is dropped, be it at once or at last.
+/// Disjoint spans of diamond angle, ascending, none of them empty. The order of occluders makes no difference: gaps that become
+/// narrower than [`LEAST_GAP`] are dropped.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Gaps(Vec<[f64; 2]>);
 
 impl Gaps {
-    /// Becomes what two lists of ascending, disjoint spans have in common.
-    pub fn open(&mut self, some: &[[f64; 2]], others: &[[f64; 2]]) {
+    /// Becomes the intersection of two lists of ascending, disjoint spans.
+    pub fn set_intersection(&mut self, some: &[[f64; 2]], others: &[[f64; 2]]) {
         self.0.clear();
         let pairs = some.iter().flat_map(|a| others.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
         self.0.extend(pairs.filter(|span| span[0] < span[1]));
@@ -26,7 +26,7 @@ impl Gaps {
         self.0.is_empty()
     }
 
-    /// Takes a span out; whether that closed anything.
+    /// Removes a span. True if any of it was open.
     #[inline]
     pub fn close(&mut self, [start, end]: [f64; 2]) -> bool {
         let Some(first) = self.0.iter().position(|gap| gap[1] > start) else { return false };
@@ -59,7 +59,7 @@ mod tests {
 
     fn gaps(spans: &[[f64; 2]]) -> Gaps {
         let mut gaps = Gaps::default();
-        gaps.open(spans, &[[-2.0, 2.0]]);
+        gaps.set_intersection(spans, &[[-2.0, 2.0]]);
         gaps
     }
 

@@ -3,16 +3,16 @@
 //! **Theory.** Seen from one point, the suns of an arc lie on a cone about its axis, and for any vector n the product
 //! `n . dir(h)` is `A cos h + B sin h + C`, not negative on one span of hour angle whose ends are known in closed form
 //! (`arc.rs`). The horizon, the surface's plane and each edge of a triangle, joined with the point to a plane, are such
-//! spans. What a triangle hides is where those of its three edges meet (`solve.rs`), and what all triangles hide is the
-//! union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
+//! spans. A triangle occludes the intersection of the spans of its three edges (`solve.rs`), and all triangles
+//! occlude the union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
 //!
 //! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
 //! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then a
-//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that no sun still lit
-//! can meet: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`). Triangles that pass are collected and
+//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that cannot
+//! occlude anything still lit: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`). Triangles that pass are collected and
 //! solved eight at a time in `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones
-//! for its cone. Across triangles with holes the sun is followed from texel to texel (`holes.rs`, `follow.rs`), triangles
-//! within the run-up of shadow rays have a case of their own (`near.rs`). SIMD is chosen at run time and changes no bit:
+//! for its cone. Across alpha-masked triangles the sun is followed from texel to texel (`alpha_mask.rs`, `follow.rs`). Triangles
+//! within the run-up of shadow rays are handled separately (`near.rs`). SIMD is chosen at run time and changes no bit:
 //! nothing is fused, every operation rounds alike.
 //!
 //! **What was tried.** Ratios are of time, from scenes of 36,000 to 600,000 triangles, before and after, on shared cores.
@@ -31,7 +31,7 @@
 //! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is foliage;
 //!   four curves that take turns instead of one after the other, 0.85 more.
 //! * The largest square of equal texels that lies ahead, not around: 0.9 where there is foliage.
-//! * Triangles with holes solved after solid ones, and packets not copied: 0.9 in shade.
+//! * Alpha-masked triangles solved after solid ones, and packets not copied: 0.9 in shade.
 //!
 //! What did not:
 //!
@@ -40,7 +40,7 @@
 //!   lists hold hundreds of triangles just where scenes are dense. With nodes and leaves on it, of what any point of the block
 //!   has left after its seeds, opened down to the size of the block: **nothing**, 0.98 to 1.1, since sixteen boxes take 25 ns
 //!   and what they save is spent on gathering, and seeds that stay the same for a block close less.
-//! * Triangles with holes followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another, so each
+//! * Alpha-masked triangles followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another, so each
 //!   that is followed spares others.
 //! * Eight curves by SIMD: nothing over four in turns. Three of eight lanes were busy on average, and the look-up between
 //!   two steps is scalar.
@@ -50,7 +50,7 @@
 //! * All of a point's work as one function compiled for the widest SIMD: nothing.
 //! * Gaps on the heap, made anew for each point (they are kept from one to the next now): half of all time went to allocation.
 //!
-//! **What is left**, on our own scene: by a profile, a quarter to a third follows holes (square by square, each with
+//! **What is left**, on our own scene: by a profile, a quarter to a third follows alpha masks (square by square, each with
 //! a branch that nothing predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a tenth collects triangles. Two thirds of
 //! the triangles solved in a walk cross the cone but hide nothing that is still lit: a test of the edges in `f32` would tell.
 //! Not tried: the triangles across the edges of those that bound a gap before the hierarchy is asked (most walks in shade
@@ -74,8 +74,8 @@ use crate::sun::SunPath;
 use crate::trace::Tracer;
 use crate::trace::bvh16::Bvh16;
 use arc::ArcFrame;
-use boxes::Frames;
-use cover::{Coverer, Query};
+use boxes::BoxFrames;
+use cover::{GapCloser, Query};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat3, DVec3};
 use walk::Walk;
@@ -95,7 +95,7 @@ pub struct ExactEngine<'a> {
 
 struct Arc {
     frame: ArcFrame,
-    frames: Frames,
+    frames: BoxFrames,
 }
 
 impl<'a> ExactEngine<'a> {
@@ -106,7 +106,7 @@ impl<'a> ExactEngine<'a> {
         // Rays start a run-up behind their point, which may be far where a file's coordinates are coarse.
         let padding = BOX_PADDING + tracer.run_up() as f32;
         let bvh = Bvh16::new(tracer, axes, padding);
-        let arc = |frame| Arc { frames: Frames::new(&frame, axes, padding), frame };
+        let arc = |frame| Arc { frames: BoxFrames::new(&frame, axes, padding), frame };
         let arcs = frames.into_iter().map(arc).collect();
         Self { tracer, bvh, arcs, lane_count: lanes.len(), level: Level::new() }
     }
@@ -122,22 +122,22 @@ impl Engine for ExactEngine<'_> {
     }
 
     fn session(&self) -> Box<dyn Session + '_> {
-        let coverer = |arc| Coverer::new(self.tracer, arc);
-        let coverers = self.arcs.iter().map(|arc| [coverer(&arc.frame), coverer(&arc.frame)]).collect();
-        Box::new(ExactSession { engine: self, coverers, scratch: Scratch::default() })
+        let closer = |arc| GapCloser::new(self.tracer, arc);
+        let closers = self.arcs.iter().map(|arc| [closer(&arc.frame), closer(&arc.frame)]).collect();
+        Box::new(ExactSession { engine: self, closers, scratch: PointScratch::default() })
     }
 }
 
 struct ExactSession<'a> {
     engine: &'a ExactEngine<'a>,
     /// For each arc, one for each side of a surface: seeds of the front are not those of the back.
-    coverers: Vec<[Coverer<'a>; 2]>,
-    scratch: Scratch,
+    closers: Vec<[GapCloser<'a>; 2]>,
+    scratch: PointScratch,
 }
 
-/// What is used anew by every point.
+/// Memory that is reused by every point.
 #[derive(Default)]
-struct Scratch {
+struct PointScratch {
     walk: Walk,
     query: Query,
     /// For each lane, when the point sees the sun.
@@ -160,7 +160,7 @@ impl ExactSession<'_> {
         self.scratch.lit.resize_with(self.engine.lane_count, Vec::new);
         for point in points {
             for arc in 0..self.engine.arcs.len() {
-                (0..=usize::from(point.is_double_sided)).for_each(|side| self.light(simd, arc, side, point));
+                (0..=usize::from(point.is_double_sided)).for_each(|side| self.solve_side(simd, arc, side, point));
             }
             for times in &mut self.scratch.lit {
                 answers.push(&Intervals::from_unsorted(std::mem::take(times)));
@@ -168,18 +168,18 @@ impl ExactSession<'_> {
         }
     }
 
-    /// Finds the light of one arc on one side of a point.
-    fn light<S: Simd>(&mut self, simd: S, arc: usize, side: usize, point: &SurfacePoint) {
-        let Self { engine, coverers, scratch: Scratch { walk, query, lit } } = self;
+    /// Finds the lit spans of one arc on one side of a point.
+    fn solve_side<S: Simd>(&mut self, simd: S, arc: usize, side: usize, point: &SurfacePoint) {
+        let Self { engine, closers, scratch: PointScratch { walk, query, lit } } = self;
         let Arc { frame, frames } = &engine.arcs[arc];
-        if !engine.open(frame, point, side, query) {
+        if !engine.start_query(frame, point, side, query) {
             return;
         }
         if !engine.bvh.nodes.is_empty() {
-            let coverer = &mut coverers[arc][side];
-            walk.work.triangles += coverer.close_with_seeds(simd, query);
+            let closer = &mut closers[arc][side];
+            walk.work.triangles += closer.close_with_seeds(simd, query);
             if !query.is_done() {
-                walk.close(simd, &engine.bvh, frames, coverer, query);
+                walk.close(simd, &engine.bvh, frames, closer, query);
             }
         }
         for (gaps, times) in query.gaps.iter().zip(lit) {
@@ -189,14 +189,14 @@ impl ExactSession<'_> {
 }
 
 impl ExactEngine<'_> {
-    /// Asks of an arc at one side of a point; whether its sun is ever before it.
-    fn open(&self, frame: &ArcFrame, point: &SurfacePoint, side: usize, query: &mut Query) -> bool {
+    /// Starts a query of an arc at one side of a point. False if the sun is never in front of that side.
+    fn start_query(&self, frame: &ArcFrame, point: &SurfacePoint, side: usize, query: &mut Query) -> bool {
         let normal = if side == 0 { point.normal } else { -point.normal };
         let (up, facing) = (frame.arc_from_bake * DVec3::Y, frame.arc_from_bake * normal);
         query.gaps.resize_with(frame.lanes.len(), Default::default);
         for (lane, gaps) in query.gaps.iter_mut().enumerate() {
             let above = frame.half_space(up, 0.0, lane);
-            gaps.open(above.as_slice(), frame.half_space(facing, 0.0, lane).as_slice());
+            gaps.set_intersection(above.as_slice(), frame.half_space(facing, 0.0, lane).as_slice());
         }
         let start = self.tracer.lift(point.position_m, normal, point.triangle) * self.tracer.tracer_from_bake();
         query.origin = frame.arc_from_bake * start;
@@ -212,7 +212,7 @@ mod tests {
     use crate::testing::{SceneBuilder, block, floor, icosphere};
     use glam::{Vec2, Vec3};
 
-    /// A floor under a stone and a post, looked at along three lanes of two arcs.
+    /// Answers for a floor under a stone and a post, along three lanes of two arcs.
     fn answers(level: impl Fn() -> Level) -> IntervalTable {
         let stone: Vec<[Vec3; 3]> = icosphere(3).iter().map(|t| t.map(|v| v + Vec3::Y * 0.6)).collect();
         let post = block(Vec3::new(1.2, 0.0, -0.1), Vec3::new(1.3, 3.0, 0.0));

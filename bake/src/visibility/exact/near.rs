@@ -1,4 +1,4 @@
-//! What a triangle hides whose plane is all but at the point.
+//! What a triangle occludes whose plane is within the run-up of the point.
 //!
 //! Shadow rays start a run-up r before their point (see [`crate::trace`]), so a triangle counts if the sun's line crosses
 //! it beyond -r. With N the sum of the edge normals and V the volume `v0 . (v1 x v2)`, the line along `dir` crosses the
@@ -8,7 +8,7 @@
 use super::arc::ArcFrame;
 use glam::DVec3;
 
-/// Spans of diamond angle that a triangle (corners relative to the point) hides.
+/// Spans of diamond angle that a triangle (corners relative to the point) occludes.
 pub(super) fn hidden_near(frame: &ArcFrame, lane: usize, [a, b, c]: [DVec3; 3], run_up: f64) -> Vec<[f64; 2]> {
     let normals = [a.cross(b), b.cross(c), c.cross(a)];
     let area = normals[0] + normals[1] + normals[2];
@@ -20,7 +20,7 @@ pub(super) fn hidden_near(frame: &ArcFrame, lane: usize, [a, b, c]: [DVec3; 3], 
     [1.0, -1.0].into_iter().flat_map(one_way).collect()
 }
 
-/// What two lists of spans have in common.
+/// The intersection of two lists of spans.
 fn meet(some: &[[f64; 2]], others: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let pairs = some.iter().flat_map(|a| others.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
     pairs.filter(|span| span[0] < span[1]).collect()

@@ -1,4 +1,4 @@
-//! The occluders of the point before, tried first: what hides the sun from a texel mostly hides it from the next.
+//! The occluders of the previous point, tested first: what occludes the sun at a texel mostly occludes it at the next.
 
 use super::solve::{LANES, Packet};
 use glam::DVec3;
@@ -6,15 +6,15 @@ use glam::DVec3;
 /// Most packets kept from one point for the next.
 const MOST_PACKETS: usize = 16;
 
-/// Triangles ready to be solved, in the order in which they were of use.
+/// Triangles in packets, in the order in which they closed gaps.
 #[derive(Default)]
-pub(super) struct Seeds {
+pub(super) struct SeedPackets {
     packets: Vec<Packet>,
     count: usize,
 }
 
-impl Seeds {
-    /// Adds a triangle, given by its corners in the arc's frame; of very many, the last are forgotten.
+impl SeedPackets {
+    /// Adds a triangle, given by its corners in the arc's frame; beyond [`MOST_PACKETS`] packets, triangles are dropped.
     pub fn add(&mut self, id: u32, corners: [DVec3; 3]) {
         let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == LANES);
         if is_full && self.count == MOST_PACKETS {
@@ -30,7 +30,7 @@ impl Seeds {
         self.packets[self.count - 1].push(id, corners);
     }
 
-    /// Forgets all of them.
+    /// Removes all of them.
     pub fn clear(&mut self) {
         self.count = 0;
     }

@@ -1,4 +1,4 @@
-//! Which part of an arc each of eight triangles hides from a point, in `f64` and in closed form.
+//! Which part of an arc each of eight triangles occludes at a point, in `f64` and in closed form.
 //!
 //! Theory: with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle
 //! hides where all three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in
@@ -9,8 +9,8 @@
 //! That holds because corners are turned into the arc's frame by one sequence of operations wherever they are, and because
 //! nothing is fused: additions and products round the same at every level of SIMD.
 //!
-//! Triangles whose plane is within the run-up of shadow rays need a case of their own (`near.rs`), and those with holes
-//! too (`holes.rs`): both are told apart here.
+//! Triangles whose plane is within the run-up of shadow rays are handled in `near.rs`, alpha-masked ones in `alpha_mask.rs`: both are
+//! told apart here.
 
 use super::arc::Declination;
 use super::gaps::Gaps;
@@ -81,20 +81,20 @@ impl Packet {
     }
 }
 
-/// What eight triangles hide at one declination, within the hull of what is asked about.
+/// What eight triangles occlude at one declination, within the hull of the gaps.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Hidden {
-    /// Which hide something.
+pub(super) struct HiddenSpans {
+    /// Bit set of those that occlude something.
     pub mask: u32,
     pub low: [f64; LANES],
     pub high: [f64; LANES],
-    /// Which have up to three holes in their span, given by `cuts`.
+    /// Bit set of those whose span has up to three holes, given by `cuts`.
     pub split: u32,
-    /// For each edge, the span between `low` and `high` that is not hidden after all, if its end is above its start.
+    /// For each edge, the span between `low` and `high` that is not occluded, if its end is above its start.
     pub cuts: [[[f64; LANES]; 2]; 3],
 }
 
-impl Hidden {
+impl HiddenSpans {
     /// The span of a triangle less its cuts, if that is one span (or an empty one), as it mostly is.
     #[inline]
     pub fn whole(&self, slot: usize) -> Option<[f64; 2]> {
@@ -125,7 +125,7 @@ impl Hidden {
     }
 }
 
-/// Leaves of some spans what does not lie in another.
+/// Removes a span from a list of spans.
 fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
     if start >= end {
         return;
@@ -150,8 +150,8 @@ fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
     }
 }
 
-/// What eight triangles hide from a point at some declinations, as far as that meets the gaps asked about. Returns the
-/// triangles whose plane is within the run-up (given squared), of which the rest of the answer is not to be believed.
+/// What eight triangles occlude at a point at some declinations, as far as it meets the gaps. Returns a bit set of the triangles
+/// whose plane is within the run-up (given squared); for these the rest of the answer is not valid.
 pub(super) fn hide<S: Simd>(
     simd: S,
     corners: &CornerLanes,
@@ -159,7 +159,7 @@ pub(super) fn hide<S: Simd>(
     run_up2: f64,
     lanes: &[Declination],
     gaps: &[Gaps],
-    hidden: &mut [Hidden],
+    hidden: &mut [HiddenSpans],
 ) -> u32 {
     simd.vectorize(
         #[inline(always)]
@@ -224,7 +224,7 @@ fn hide_at<S: Simd>(
     edges: &Edges<S>,
     Declination { cos, sin }: Declination,
     gaps: &[[f64; 2]],
-    hidden: &mut Hidden,
+    hidden: &mut HiddenSpans,
 ) {
     hidden.mask = 0;
     hidden.split = 0;
@@ -249,7 +249,7 @@ fn hide_at<S: Simd>(
         } else {
             hidden.cuts[k] = [[3.0; LANES], [-3.0; LANES]];
         }
-        // Most triangles are off the sun's way altogether, and one or two edges tell.
+        // Most triangles occlude nothing, and one or two edges show it.
         let mut alive = low.simd_lt(low);
         for gap in gaps {
             alive |= low.simd_lt(gap[1]) & high.simd_gt(gap[0]);
@@ -264,7 +264,7 @@ fn hide_at<S: Simd>(
 }
 
 /// Where eight functions `a cos h + b sin h + c` are not negative: see [`super::arc::half_space`], its scalar twin.
-struct Span<S: Simd> {
+struct LaneSpans<S: Simd> {
     start: f64x8<S>,
     end: f64x8<S>,
     /// Neither everywhere nor nowhere.
@@ -272,7 +272,7 @@ struct Span<S: Simd> {
 }
 
 #[inline(always)]
-fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> Span<S> {
+fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> LaneSpans<S> {
     let zero = f64x8::splat(simd, 0.0);
     let d = a * a + b * b - c * c;
     let is_part = d.simd_gt(zero);
@@ -282,7 +282,7 @@ fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> Span<S> {
     let [start, end] = diamonds(simd, [wb - ca, zero - cb - wa], [zero - ca - wb, wa - cb]);
     let far = f64x8::splat(simd, 3.0);
     let whole_start = everywhere.select(zero - far, far);
-    Span { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
+    LaneSpans { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
 }
 
 /// Two diamond angles by one division: see [`super::arc::diamonds`].

@@ -1,13 +1,13 @@
-//! The walk of the hierarchy: near things first, past whatever cannot hide anything that is still lit, until nothing is.
+//! The walk of the hierarchy: near boxes first, skipping what cannot occlude anything still lit, until nothing is lit.
 
-use super::boxes::{Frames, Wanted, leaf_met, node_met};
-use super::cover::{Coverer, Query};
+use super::boxes::{BoxFrames, LitSpans, leaf_met, node_met};
+use super::cover::{GapCloser, Query};
 use super::solve::{LANES, Packet};
 use crate::trace::bvh16::{Bvh16, Child, WIDTH, bits, push_far_first};
 use crate::visibility::Work;
 use fearless_simd::Simd;
 
-/// What a walk has yet to go to.
+/// A child that is still to be visited.
 #[derive(Debug, Clone, Copy)]
 struct Pending {
     child: Child,
@@ -15,20 +15,27 @@ struct Pending {
     near2: f32,
 }
 
-/// A walk from one point, and the room that it needs, kept from one to the next.
+/// A walk from one point. Its memory is reused for the next point.
 #[derive(Default)]
 pub(super) struct Walk {
-    wanted: Wanted,
+    lit: LitSpans,
     pub work: Work,
     stack: Vec<Pending>,
-    /// Triangles to be solved together: solid ones, and those with holes.
+    /// Triangles to be solved together: solid ones, and alpha-masked ones.
     collected: [Packet; 2],
 }
 
 impl Walk {
-    /// Closes the query's gaps with whatever lies in the hierarchy. Stops when there is none.
-    pub fn close<S: Simd>(&mut self, simd: S, bvh: &Bvh16, frames: &Frames, coverer: &mut Coverer, query: &mut Query) {
-        self.wanted.look_from(frames, query);
+    /// Closes the query's gaps with the triangles of the hierarchy. Stops when no gap is left.
+    pub fn close<S: Simd>(
+        &mut self,
+        simd: S,
+        bvh: &Bvh16,
+        frames: &BoxFrames,
+        closer: &mut GapCloser,
+        query: &mut Query,
+    ) {
+        self.lit.start(frames, query);
         self.collected.iter_mut().for_each(|packet| packet.count = 0);
         self.stack.clear();
         self.stack.push(Pending { child: Child::ROOT, near2: 0.0 });
@@ -39,15 +46,15 @@ impl Walk {
                 Child::Node(node) => {
                     let node = &bvh.nodes[node as usize];
                     let first = self.stack.len();
-                    for lane in bits(node_met(simd, node, &self.wanted, &mut near2)) {
+                    for lane in bits(node_met(simd, node, &self.lit, &mut near2)) {
                         let pending = Pending { child: node.child[lane], near2: near2[lane] };
                         push_far_first(&mut self.stack, first, pending, |pending| pending.near2);
                     }
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &bvh.leaves[leaf as usize];
-                    for lane in bits(leaf_met(simd, leaf, &self.wanted)) {
-                        self.take(simd, leaf.ids[lane], coverer, query);
+                    for lane in bits(leaf_met(simd, leaf, &self.lit)) {
+                        self.take(simd, leaf.ids[lane], closer, query);
                     }
                     if query.is_done() {
                         return;
@@ -56,21 +63,21 @@ impl Walk {
             }
         }
         for packet in self.collected.iter_mut().filter(|packet| packet.count > 0) {
-            coverer.turn_and_close(simd, packet, query);
+            closer.turn_and_close(simd, packet, query);
         }
     }
 
-    /// Takes a triangle, and solves those taken once there are enough.
+    /// Collects a triangle, and solves the collected ones once there are eight.
     #[inline]
-    fn take<S: Simd>(&mut self, simd: S, id: u32, coverer: &mut Coverer, query: &mut Query) {
+    fn take<S: Simd>(&mut self, simd: S, id: u32, closer: &mut GapCloser, query: &mut Query) {
         self.work.triangles += 1;
-        let packet = &mut self.collected[usize::from(coverer.tracer.has_alpha_mask(id))];
-        packet.push_unturned(id, &coverer.tracer.corners()[id as usize]);
+        let packet = &mut self.collected[usize::from(closer.tracer.has_alpha_mask(id))];
+        packet.push_unturned(id, &closer.tracer.corners()[id as usize]);
         if packet.count == LANES {
-            let closed = coverer.turn_and_close(simd, packet, query);
+            let closed = closer.turn_and_close(simd, packet, query);
             packet.count = 0;
             if closed {
-                self.wanted.want(query);
+                self.lit.update(query);
             }
         }
     }

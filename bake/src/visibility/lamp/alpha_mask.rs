@@ -1,13 +1,13 @@
-//! Which part of a hidden span a triangle with holes really hides.
+//! Which part of an occluded span an alpha-masked triangle really occludes.
 //!
 //! While the lamp moves along its segment, the point where its ray pierces the triangle moves along a straight line of the
 //! triangle's plane, and the texture coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of
 //! the edge normals with the lamp: all linear in s. A border between two columns of texels, `u = k / width`, is crossed
 //! where `sum(w_i (u_i width - k)) = 0`, a linear condition. So the line is followed from texel to texel, and no texel is
-//! skipped but such as are crossed in less than [`LEAST_STEP`]. Squares of texels that are solid or clear throughout are
+//! skipped except those that are crossed in less than [`LEAST_STEP`]. Squares of texels that are solid or clear throughout are
 //! crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at one root more.
 //!
-//! The sun's version, along a curve, is `exact/holes.rs`.
+//! The sun's version, along a curve, is `exact/alpha_mask.rs`.
 
 use super::hide::Leg;
 use super::span::{Span, common, not_negative};
@@ -20,12 +20,12 @@ const LEAST_STEP: f64 = 1e-10;
 /// Most steps that one triangle is followed for; they grow where there would be more.
 const MOST_STEPS: f64 = 65_536.0;
 
-/// Spans found; few, as a rule.
-pub(super) type Parts = SmallVec<[Span; 8]>;
+/// Solid spans; usually few.
+pub(super) type SolidSpans = SmallVec<[Span; 8]>;
 
-/// A triangle with holes, seen from a point along a leg. Each pair holds values at the leg's two ends.
-pub(super) struct Pierced<'a> {
-    cut: MaskedTriangle<'a>,
+/// An alpha-masked triangle, seen from a point along a leg. Each pair holds values at the leg's two ends.
+pub(super) struct MaskedTriangleView<'a> {
+    mask: MaskedTriangle<'a>,
     /// For each corner, its weight.
     weights: [[f64; 2]; 3],
     /// Their sum, and their sums weighted by each texture coordinate.
@@ -33,22 +33,22 @@ pub(super) struct Pierced<'a> {
     along: [[f64; 2]; 2],
 }
 
-impl<'a> Pierced<'a> {
+impl<'a> MaskedTriangleView<'a> {
     /// From the corners relative to the point.
-    pub fn new(cut: MaskedTriangle<'a>, leg: &Leg, [a, b, c]: [DVec3; 3]) -> Self {
+    pub fn new(mask: MaskedTriangle<'a>, leg: &Leg, [a, b, c]: [DVec3; 3]) -> Self {
         let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|n| leg.along(n));
-        let along = [cut.texel_uvs.map(|uv| uv.x), cut.texel_uvs.map(|uv| uv.y)].map(|uvs| blend(weights, uvs));
-        Self { total: blend(weights, [1.0; 3]), along, weights, cut }
+        let along = [mask.texel_uvs.map(|uv| uv.x), mask.texel_uvs.map(|uv| uv.y)].map(|uvs| blend(weights, uvs));
+        Self { total: blend(weights, [1.0; 3]), along, weights, mask }
     }
 
     /// Adds the solid parts of a span on which the triangle is pierced.
-    pub fn solid_parts(&self, [start, end]: Span, parts: &mut Parts) {
+    pub fn solid_parts(&self, [start, end]: Span, parts: &mut SolidSpans) {
         let least_step = ((end - start) / MOST_STEPS).max(LEAST_STEP);
         let mut at = start;
         while at < end {
             let texel = self.texel((at + least_step).min(0.5 * (at + end)));
-            let (square, verdict) = self.cut.uniform(texel);
-            let next = if self.cut.has_texture() { self.next_border(square, at + least_step, end) } else { end };
+            let (square, verdict) = self.mask.uniform(texel);
+            let next = if self.mask.has_texture() { self.next_border(square, at + least_step, end) } else { end };
             match verdict {
                 Some(true) => join(parts, [at, next]),
                 Some(false) => {}
@@ -79,9 +79,9 @@ impl<'a> Pierced<'a> {
         next
     }
 
-    fn solid_in_texel(&self, texel: [i64; 2], span: Span, parts: &mut Parts) {
-        let alpha = self.cut.alpha_of(texel);
-        let above = blend(self.weights, self.cut.alphas.map(|own| own * alpha - self.cut.cutoff));
+    fn solid_in_texel(&self, texel: [i64; 2], span: Span, parts: &mut SolidSpans) {
+        let alpha = self.mask.alpha_of(texel);
+        let above = blend(self.weights, self.mask.alphas.map(|own| own * alpha - self.mask.cutoff));
         // Weights are negative where the triangle is seen from its back.
         let side = 1f64.copysign(self.total[0] + self.total[1]);
         if let Some(solid) = not_negative(above.map(|value| value * side)).and_then(|solid| common(solid, span)) {
@@ -101,7 +101,7 @@ fn at([first, last]: [f64; 2], s: f64) -> f64 {
 }
 
 /// Adds a span that starts no earlier than those before it.
-fn join(parts: &mut Parts, span: Span) {
+fn join(parts: &mut SolidSpans, span: Span) {
     match parts.last_mut() {
         _ if span[0] >= span[1] => {}
         Some(last) if last[1] >= span[0] => last[1] = last[1].max(span[1]),

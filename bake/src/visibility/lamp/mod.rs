@@ -1,13 +1,13 @@
-//! When points see a lamp that moves through the scene.
+//! Lit intervals of a lamp that moves through the scene.
 //!
 //! From a point, all rays to the lamp on one straight segment of its path lie in one triangle. One walk of the hierarchy
-//! against that triangle (`walk.rs`) finds every occluder of the segment, and each hides a span of it in closed form, ended
-//! by the lamp's own passage through the occluder's plane (`hide.rs`), less its holes (`holes.rs`). The walk passes over
-//! what could hide only what is hidden already, and stops when nothing is open (`open.rs`). The occluders of the point
-//! before are tried first (`seeds.rs`).
+//! against that triangle (`walk.rs`) finds every occluder of the segment, and each occludes a span of it in closed form, which may
+//! end where the lamp passes through the occluder's plane (`hide.rs`); alpha masks are followed texel by texel (`alpha_mask.rs`). The
+//! walk skips boxes that can occlude only what is occluded already, and stops when nothing is open (`open.rs`). The occluders of the
+//! previous point are tested first (`seeds.rs`).
 //!
-//! A lamp has no horizon. The surface's plane is a gate that is linear in s too; a double-sided surface is asked from
-//! whichever side the lamp is on. [`LampRays`] asks evenly spaced places of the lamp instead, to compare with.
+//! A lamp has no horizon. The condition that it is in front of the surface's plane is linear in s, too. For a double-sided surface,
+//! rays start on the side that faces the lamp. [`LampRays`] traces rays to evenly spaced positions of the lamp, for comparison.
 
 mod alpha_mask;
 mod hide;
@@ -23,11 +23,11 @@ use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::lamp::{LampPath, LampSegment};
 use crate::trace::Tracer;
-use alpha_mask::{Parts, Pierced};
+use alpha_mask::{MaskedTriangleView, SolidSpans};
 use glam::DVec3;
 use hide::Leg;
-use open::Open;
-use seeds::Seeds;
+use open::OpenSpans;
+use seeds::SeedTriangles;
 use span::{Span, common, not_negative};
 use walk::{Fan, Opened, Tree};
 
@@ -63,7 +63,7 @@ impl Engine for LampEngine<'_> {
 struct LampSession<'a> {
     engine: &'a LampEngine<'a>,
     /// For each segment, one for each side of a surface.
-    seeds: Vec<[Seeds; 2]>,
+    seeds: Vec<[SeedTriangles; 2]>,
     work: Work,
     stack: Vec<u32>,
 }
@@ -87,12 +87,12 @@ impl Session for LampSession<'_> {
 }
 
 impl LampSession<'_> {
-    /// Adds when the lamp is seen on a segment from one side of a point.
+    /// Adds the times at which one side of a point sees the lamp on a segment.
     fn lit_on(&mut self, index: usize, point: &SurfacePoint, side: usize, lit: &mut Vec<[f64; 2]>) {
         let LampEngine { tracer, segments, .. } = self.engine;
         let segment = &segments[index];
         let normal = if side == 0 { point.normal } else { -point.normal };
-        let mut open = Open::new(before_plane(segment, point.position_m, normal));
+        let mut open = OpenSpans::new(before_plane(segment, point.position_m, normal));
         if open.is_empty() {
             return;
         }
@@ -103,8 +103,8 @@ impl LampSession<'_> {
         lit.extend(open.as_slice().iter().map(|span| span.map(|s| t_of(segment, s))));
     }
 
-    /// Closes all that is hidden.
-    fn close(&mut self, index: usize, side: usize, origin: DVec3, leg: &Leg, open: &mut Open) {
+    /// Closes all that is occluded.
+    fn close(&mut self, index: usize, side: usize, origin: DVec3, leg: &Leg, open: &mut OpenSpans) {
         let tracer = self.engine.tracer;
         let seeds = &mut self.seeds[index][side];
         seeds.next_point();
@@ -125,7 +125,7 @@ impl LampSession<'_> {
                 return;
             }
             if is_useful {
-                fan.want(open);
+                fan.update(open);
             }
         }
     }
@@ -143,8 +143,8 @@ fn t_of(segment: &LampSegment, s: f64) -> f64 {
     if s == 1.0 { end } else { start + s * (end - start) }
 }
 
-/// Closes what a triangle hides; whether that was anything.
-fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut Open) -> bool {
+/// Closes what a triangle occludes. True if any of it was open.
+fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut OpenSpans) -> bool {
     let corners = tracer.corners()[id as usize].map(|corner| corner.as_dvec3() - origin);
     let hidden = leg.hidden_by(corners);
     if hidden.is_empty() {
@@ -152,9 +152,9 @@ fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut Ope
     }
     match tracer.mask(id) {
         None => hidden.iter().fold(false, |any, &span| open.close(span) | any),
-        Some(cut) => {
-            let pierced = Pierced::new(cut, leg, corners);
-            let mut solid = Parts::new();
+        Some(mask) => {
+            let pierced = MaskedTriangleView::new(mask, leg, corners);
+            let mut solid = SolidSpans::new();
             for &span in &hidden {
                 open.as_slice().iter().filter_map(|&still| common(span, still)).for_each(|part| {
                     pierced.solid_parts(part, &mut solid);

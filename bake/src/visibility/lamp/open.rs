@@ -1,4 +1,4 @@
-//! What of a segment is still open: spans that occluders eat into.
+//! The spans of a segment that are still open: occluders close them.
 
 use super::span::Span;
 use smallvec::SmallVec;
@@ -7,11 +7,11 @@ use smallvec::SmallVec;
 /// sharing an edge, and last a tenth of a microsecond of a segment that takes a quarter of an hour.
 const LEAST_OPEN: f64 = 1e-10;
 
-/// Disjoint spans, ascending, none of them empty. Few, as a rule: they are held in place.
+/// Disjoint spans, ascending, none of them empty; usually few, and then stored inline.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Open(SmallVec<[Span; 4]>);
+pub(super) struct OpenSpans(SmallVec<[Span; 4]>);
 
-impl Open {
+impl OpenSpans {
     /// One span, or none.
     pub fn new(span: Option<Span>) -> Self {
         Self(span.into_iter().collect())
@@ -26,7 +26,7 @@ impl Open {
         self.0.is_empty()
     }
 
-    /// Takes a span out; whether anything of it was open.
+    /// Removes a span. True if any of it was open.
     pub fn close(&mut self, [start, end]: Span) -> bool {
         let Some(first) = self.0.iter().position(|open| open[1] > start && open[0] < end) else { return false };
         let mut left: SmallVec<[Span; 4]> = self.0[..first].into();
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     fn closed(spans: &[Span]) -> Vec<Span> {
-        let mut open = Open::new(Some([0.0, 1.0]));
+        let mut open = OpenSpans::new(Some([0.0, 1.0]));
         for span in spans {
             open.close(*span);
         }
@@ -63,9 +63,9 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_open_is_not_closed() {
-        let mut open = Open::new(Some([0.25, 0.5]));
+    fn spans_that_were_not_open_are_not_closed() {
+        let mut open = OpenSpans::new(Some([0.25, 0.5]));
         assert!(!open.close([0.5, 0.75]) && !open.close([0.0, 0.25]) && open.close([0.0, 0.3]));
-        assert!(!Open::new(None).close([0.0, 1.0]));
+        assert!(!OpenSpans::new(None).close([0.0, 1.0]));
     }
 }

@@ -1,8 +1,8 @@
-//! N rays a point to N places of a lamp: a baseline for the closed form, as `visibility/rays.rs` is for the sun.
+//! N rays a point to N positions of a lamp: a baseline for the closed form, as `visibility/rays.rs` is for the sun.
 //!
 //! The path is cut into N equal steps of time, and a ray is traced to the lamp's place at the middle of each; the step is
-//! lit or dark as its ray is. Edges are off by half a step at most, and what is thinner than a step may be missed. What
-//! hid the place before and what last hid this place are tried before the hierarchy is walked.
+//! lit or dark as its ray is. Edges are off by half a step at most, and what is thinner than a step may be missed. The
+//! occluder of the previous position and the last occluder of this one are tested before the hierarchy is walked.
 
 use super::super::probe::side_towards;
 use super::{Engine, IntervalTable, Intervals, Session, Work};
@@ -11,23 +11,23 @@ use crate::lamp::LampPath;
 use crate::trace::{Occluder, Tracer};
 use glam::DVec3;
 
-/// N evenly spaced places of a lamp.
+/// N evenly spaced positions of a lamp.
 pub struct LampRays<'a> {
     tracer: &'a Tracer,
-    places_m: Vec<DVec3>,
+    positions_m: Vec<DVec3>,
 }
 
 impl<'a> LampRays<'a> {
     /// Places the lamp `count` times along its path, bake space.
     pub fn new(tracer: &'a Tracer, path: &LampPath, count: usize) -> Self {
         let middle = |step: usize| (step as f64 + 0.5) / count as f64;
-        Self { tracer, places_m: (0..count).map(|step| path.position_m(middle(step))).collect() }
+        Self { tracer, positions_m: (0..count).map(|step| path.position_m(middle(step))).collect() }
     }
 }
 
 impl Engine for LampRays<'_> {
     fn name(&self) -> String {
-        format!("rays:{}", self.places_m.len())
+        format!("rays:{}", self.positions_m.len())
     }
 
     fn lane_count(&self) -> usize {
@@ -35,20 +35,20 @@ impl Engine for LampRays<'_> {
     }
 
     fn session(&self) -> Box<dyn Session + '_> {
-        Box::new(RaySession { engine: self, last: vec![None; self.places_m.len()], work: Work::default() })
+        Box::new(LampRaySession { engine: self, last: vec![None; self.positions_m.len()], work: Work::default() })
     }
 }
 
-struct RaySession<'a> {
+struct LampRaySession<'a> {
     engine: &'a LampRays<'a>,
-    /// For each place, what last hid it.
+    /// For each position, its last occluder.
     last: Vec<Option<Occluder>>,
     work: Work,
 }
 
-impl Session for RaySession<'_> {
+impl Session for LampRaySession<'_> {
     fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
-        let count = self.engine.places_m.len();
+        let count = self.engine.positions_m.len();
         let t = |step: usize| step as f64 / count as f64;
         for point in points {
             let origins_m =
@@ -67,8 +67,8 @@ impl Session for RaySession<'_> {
     }
 }
 
-impl RaySession<'_> {
-    /// `before` is what hid the place before this one, and then this one.
+impl LampRaySession<'_> {
+    /// `before` is the occluder of the previous position; it becomes that of this one.
     fn is_lit(
         &mut self,
         point: &SurfacePoint,
@@ -76,15 +76,15 @@ impl RaySession<'_> {
         step: usize,
         before: &mut Option<Occluder>,
     ) -> bool {
-        let LampRays { tracer, places_m } = self.engine;
-        let place_m = places_m[step];
-        let Some(side) = side_towards(point, place_m - point.position_m) else { return false };
+        let LampRays { tracer, positions_m } = self.engine;
+        let lamp_m = positions_m[step];
+        let Some(side) = side_towards(point, lamp_m - point.position_m) else { return false };
         self.work.rays += 1;
         let origin_m = origins_m[side as usize];
         let last = &mut self.last[step];
-        let hides = |guess: &Occluder| tracer.is_hidden_by(*guess, origin_m, place_m);
+        let hides = |guess: &Occluder| tracer.is_hidden_by(*guess, origin_m, lamp_m);
         let guessed = [*last, *before].into_iter().flatten().find(hides);
-        let occluder = guessed.or_else(|| tracer.occluder_before(origin_m, place_m));
+        let occluder = guessed.or_else(|| tracer.occluder_before(origin_m, lamp_m));
         *before = occluder;
         *last = occluder.or(*last);
         occluder.is_none()

@@ -1,20 +1,20 @@
-//! The occluders of the points before, tried first: what hides the lamp from a texel mostly hides it from the next.
+//! The occluders of previous points, tested first: what occludes the lamp at a texel mostly occludes it at the next.
 
-/// Most triangles kept; more are thinned to those of late use.
+/// Most triangles kept; if there are more, those that closed nothing recently are dropped.
 const MOST: usize = 64;
-/// For how many points a triangle is kept that closes nothing.
+/// For how many points a triangle that closes nothing is kept.
 const PATIENCE: u32 = 6;
 
-/// Triangles in the order in which they are tried, with the point at which each was last of use.
+/// Triangles in the order in which they are tested, with the number of the point at which each last closed anything.
 #[derive(Debug, Default)]
-pub(super) struct Seeds {
+pub(super) struct SeedTriangles {
     triangles: Vec<(u32, u32)>,
     /// Numbers the points.
     now: u32,
 }
 
-impl Seeds {
-    /// Goes on to the next point; drops what has been of no use for a while.
+impl SeedTriangles {
+    /// Goes on to the next point; drops triangles that have closed nothing for a while.
     pub fn next_point(&mut self) {
         self.now += 1;
         if self.triangles.len() > MOST {
@@ -24,13 +24,13 @@ impl Seeds {
         }
     }
 
-    /// Adds a triangle that was of use.
+    /// Adds a triangle that closed something.
     pub fn add(&mut self, triangle: u32) {
         self.triangles.push((triangle, self.now));
     }
 
-    /// Tries triangles until one says that nothing is left to do. Each tells whether it was of use, and whether it was
-    /// the last. Returns how many were tried.
+    /// Calls `close` for each triangle until nothing is left to close. It returns whether the triangle closed anything, and whether
+    /// nothing is left. Returns how many triangles were tested.
     pub fn try_all(&mut self, mut close: impl FnMut(u32) -> (bool, bool)) -> u64 {
         let mut tried = 0;
         for (triangle, last_use) in &mut self.triangles {

@@ -20,7 +20,7 @@ pub(super) fn not_negative([first, last]: [f64; 2]) -> Option<Span> {
     }
 }
 
-/// What two spans have in common, if it has a length.
+/// The intersection of two spans, if it has a length.
 #[inline]
 pub(super) fn common(a: Span, b: Span) -> Option<Span> {
     let span = [a[0].max(b[0]), a[1].min(b[1])];
@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_touches_has_nothing_in_common() {
+    fn spans_that_only_touch_have_no_intersection() {
         assert_eq!(all_not_negative([[1.0, -1.0], [-1.0, 1.0]]), None);
         assert_eq!(all_not_negative([[1.0, -1.0], [-1.0, 3.0]]), Some([0.25, 0.5]));
         assert_eq!(all_not_negative([[0.0, -1.0]]), None);

@@ -1,4 +1,4 @@
-//! The hierarchy against what a point and a segment span: a triangle, in whose plane all rays to the lamp lie.
+//! The hierarchy against the triangle that a point and a segment span: all rays to the lamp lie in its plane.
 //!
 //! A box is entered only if it meets the triangle's own box and plane, if it does not lie beyond the segment, and if rays
 //! to a part of it that is still open may meet it: with n the triangle's normal, what is pierced later than s has a
@@ -8,7 +8,7 @@
 //! Where point and segment are in one line there is no plane, and the triangle's box alone decides.
 
 use super::hide::Leg;
-use super::open::Open;
+use super::open::OpenSpans;
 use crate::trace::{Tracer, binary_hierarchy};
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
@@ -17,18 +17,18 @@ use smallvec::SmallVec;
 const BOX_PADDING: f64 = 1.0 / 256.0;
 /// Sine of the angle between the ends of a leg below which they count as in one line.
 const LEAST_SINE: f64 = 1e-7;
-/// Most open spans that are told apart; more are joined.
+/// Most open spans that are kept apart; more are joined.
 const MOST_SPANS: usize = 6;
 
 /// A binary hierarchy over every triangle of the tracer, root first.
 pub(super) struct Tree {
-    nodes: Vec<Node>,
+    nodes: Vec<TreeBox>,
     /// Triangles of leaves.
     order: Vec<u32>,
 }
 
 /// A box with what it holds.
-struct Node {
+struct TreeBox {
     centre: DVec3,
     half: DVec3,
     /// Number of triangles; none if it has children.
@@ -37,7 +37,7 @@ struct Node {
     first: u32,
 }
 
-/// What a node turned out to be.
+/// The next step of a walk.
 pub(super) enum Opened<'a> {
     /// Nothing is left to visit.
     Done,
@@ -53,7 +53,7 @@ impl Tree {
         let (nodes, order) = binary_hierarchy(&boxes);
         let node = |node: &crate::trace::BinaryNode| {
             let [low, high] = node.bounds.map(|corner| corner.as_dvec3());
-            Node { centre: 0.5 * (low + high), half: 0.5 * (high - low), count: node.count, first: node.first }
+            TreeBox { centre: 0.5 * (low + high), half: 0.5 * (high - low), count: node.count, first: node.first }
         };
         Self { nodes: nodes.iter().map(node).collect(), order }
     }
@@ -91,11 +91,11 @@ pub(super) struct Fan {
     /// Box of the triangle, relative to the point.
     low: DVec3,
     high: DVec3,
-    plane: Option<Plane>,
+    plane: Option<FanPlane>,
 }
 
 /// The triangle's plane. None of it is needed where the point is in line with the segment.
-struct Plane {
+struct FanPlane {
     /// Unit normal.
     normal: DVec3,
     /// What lies beyond the segment has a larger product with the first than the second.
@@ -106,7 +106,7 @@ struct Plane {
 
 impl Fan {
     /// The fan from `origin` to a leg.
-    pub fn new(origin: DVec3, leg: &Leg, open: &Open) -> Self {
+    pub fn new(origin: DVec3, leg: &Leg, open: &OpenSpans) -> Self {
         let [first, last] = leg.ends;
         let zero = DVec3::ZERO;
         let (low, high) = (first.min(last).min(zero), first.max(last).max(zero));
@@ -114,15 +114,15 @@ impl Fan {
         let area = across.length();
         let plane = (area > LEAST_SINE * first.length() * last.length()).then(|| {
             let normal = across / area;
-            Plane { normal, far: (normal.cross(first - last), area), open: SmallVec::new() }
+            FanPlane { normal, far: (normal.cross(first - last), area), open: SmallVec::new() }
         });
         let mut fan = Self { origin, ends: leg.ends, low, high, plane };
-        fan.want(open);
+        fan.update(open);
         fan
     }
 
-    /// Looks for what is open now.
-    pub fn want(&mut self, open: &Open) {
+    /// Takes the spans that are open now.
+    pub fn update(&mut self, open: &OpenSpans) {
         let Some(plane) = &mut self.plane else { return };
         let [first, last] = self.ends;
         let bound = |s: f64| plane.normal.cross(first + (last - first) * s);
@@ -133,19 +133,19 @@ impl Fan {
         plane.open = spans.iter().map(|span| span.map(bound)).collect();
     }
 
-    fn meets(&self, node: &Node) -> bool {
+    fn meets(&self, node: &TreeBox) -> bool {
         let centre = node.centre - self.origin;
         let overlaps = (centre + node.half).cmpge(self.low) & (centre - node.half).cmple(self.high);
         overlaps.all() && self.plane.as_ref().is_none_or(|plane| plane.meets(centre, node.half))
     }
 
     /// Squared distance of a box from the point.
-    fn distance2(&self, node: &Node) -> f64 {
+    fn distance2(&self, node: &TreeBox) -> f64 {
         ((node.centre - self.origin).abs() - node.half).max(DVec3::ZERO).length_squared()
     }
 }
 
-impl Plane {
+impl FanPlane {
     fn meets(&self, centre: DVec3, half: DVec3) -> bool {
         let reach = |n: DVec3| n.abs().dot(half);
         let (far, limit) = self.far;
