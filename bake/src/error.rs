@@ -1,7 +1,7 @@
 //! What every error of this crate says beside its text: which class it is of, and what to do next.
 //!
-//! All of it stands here, so that the same error has the same class whoever meets it. `sunbake-runtime` has the same table
-//! for its own errors. The commands exit by the class (see `console`).
+//! All of it stands here, so that the same error has the same class whoever meets it. `sunbake-runtime` has the same
+//! table for its own errors. The commands exit by the class (see `console`).
 
 use crate::BakeError;
 use crate::atlas::AtlasError;

@@ -13,7 +13,8 @@ pub enum Light {
     Lamp,
 }
 
-/// Something that was done otherwise than asked, or that looks wrong. Its text says what; [`Warning::remedy`] what to do.
+/// Something that was done otherwise than asked, or that looks wrong. Its text says what; [`Warning::remedy`] what to
+/// do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Warning {
     /// Something in the scene was not read as the file has it.
@@ -35,8 +36,8 @@ pub enum Warning {
     },
     /// A mesh has too many charts for a page, so charts are closer together than asked.
     #[error(
-        "a mesh has too many charts for a page of {page_size_texels} texels with a padding of {asked_texels}: it was baked \
-         with a padding of {used_texels}"
+        "a mesh has too many charts for a page of {page_size_texels} texels with a padding of {asked_texels}: \
+         it was baked with a padding of {used_texels}"
     )]
     PaddingReduced {
         /// Edge of the page, in texels.
@@ -64,8 +65,8 @@ pub enum Warning {
     },
     /// Some meshes do not get the density asked for.
     #[error(
-        "{meshes} meshes do not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; mesh {mesh} \
-         gets {reached_per_metre:.3}"
+        "{meshes} meshes do not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; \
+         mesh {mesh} gets {reached_per_metre:.3}"
     )]
     LessDensity {
         /// How many.
@@ -81,7 +82,8 @@ pub enum Warning {
     },
     /// The file's own coordinates fill one page, which decides the density.
     #[error(
-        "TEXCOORD_1 fills one page, so the density is {reached_per_metre:.3} texels a metre instead of {asked_per_metre}"
+        "TEXCOORD_1 fills one page, so the density is {reached_per_metre:.3} texels a metre instead of \
+         {asked_per_metre}"
     )]
     DensityGiven {
         /// Texels a metre, asked for.
@@ -91,7 +93,8 @@ pub enum Warning {
     },
     /// The file's own coordinates could not be used.
     #[error(
-        "TEXCOORD_1 of {meshes} meshes tiles, overlaps, has no area or has islands too close together: they were unwrapped"
+        "TEXCOORD_1 of {meshes} meshes tiles, overlaps, has no area or has islands too close together: \
+         they were unwrapped"
     )]
     Unwrapped {
         /// Of how many meshes.
@@ -99,8 +102,8 @@ pub enum Warning {
     },
     /// Nearly nothing sees the sun.
     #[error(
-        "{:.0} % of the texels never see the sun; if that is wrong, something may enclose the scene, as an outline hull or a \
-         sky dome does: leave its material out",
+        "{:.0} % of the texels never see the sun; if that is wrong, something may enclose the scene, as an outline \
+         hull or a sky dome does: leave its material out",
         100.0 * share
     )]
     Dark {
@@ -109,8 +112,8 @@ pub enum Warning {
     },
     /// Texels have more intervals than their layers hold.
     #[error(
-        "{texels} texels have more intervals{} than {layer_cap} layers hold: the worst is wrong for {worst_min:.1} minutes of \
-         the day, and {needed_layers} layers would keep them all",
+        "{texels} texels have more intervals{} than {layer_cap} layers hold: the worst is wrong for {worst_min:.1} \
+         minutes of the day, and {needed_layers} layers would keep them all",
         if *light == Light::Lamp { " of the lamp" } else { "" }
     )]
     Merged {

@@ -83,7 +83,7 @@ fn impossible_requests_are_refused_with_advice() {
         (&ours, &["--technique", "volumes", "--lamp-range", "-1"], 1, "metres above 0"),
         (&ours, &["--technique", "volumes", "--lamp-range", "5"], 1, "there is no lamp"),
         (&ours, &["--technique", "volumes", "--ambient", "sh2"], 1, "leave --ambient out"),
-        (&ours, &["--technique", "volumes", "--light", "sky", "--output", "volumes"], 1, "throws no volumes"),
+        (&ours, &["--technique", "volumes", "--light", "sky", "--output", "volumes"], 1, "no shadow volumes"),
         (&broken, &["--technique", "volumes"], 3, "broken.glb"),
         (&nowhere, &["--technique", "volumes"], 2, "nowhere.glb"),
     ];

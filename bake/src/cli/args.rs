@@ -1,5 +1,9 @@
 //! Every option, with its range and its default.
 
+use super::values::{
+    parse_attribute, parse_bits, parse_budget, parse_bytes, parse_density, parse_edge_seconds, parse_engine,
+    parse_error, parse_lanes, parse_metres, parse_only, parse_rays, parse_window,
+};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::console::SunArgs;
@@ -19,9 +23,9 @@ pub enum Command {
     /// Bake a glTF scene into a set of maps.
     ///
     /// Writes a folder: sunbake.json (what is in it), scene.glb (the scene with the bake's texture coordinates as
-    /// TEXCOORD_1 and its ambient occlusion, for any viewer), PNGs with ambient occlusion, and pairs of PNGs with the times at
-    /// which every texel begins and ceases to see the sun. It is written beside its target and moved into place when it is
-    /// whole.
+    /// TEXCOORD_1 and its ambient occlusion, for any viewer), PNGs with ambient occlusion, and pairs of PNGs with the
+    /// times at which each texel starts and stops seeing the sun. The folder is written beside its target and moved
+    /// into place when it is complete.
     ///
     /// Exit codes: 0 done, 1 usage, 2 reading or writing failed, 3 the input is bad, 4 a defect of sunbake, 5 not
     /// supported by this machine, 130 or 143 stopped by a signal.
@@ -30,17 +34,18 @@ pub enum Command {
     Inspect(InspectArgs),
     /// Print some covered texels of a set as JSON lines.
     ///
-    /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the sun
-    /// start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
-    /// where there are several), lamp (when it sees the lamp, where the set has one), ao, ao_back, bent and sky. With these, any ray tracer can check a bake.
+    /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the
+    /// sun start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same
+    /// for each lane, where there are several), lamp (when it sees the lamp, where the set has one), ao, ao_back, bent
+    /// and sky. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
     /// Measure what accuracy costs on a scene and this machine.
     ///
-    /// Turns every setting that trades time or bytes for error (presets, page sizes, lanes, engines, bits, layers, rays of
-    /// sky) and writes a folder: report.html (tables, plots, and what to choose in words) and report.json (the same for
-    /// programs). Errors are minutes of sun told wrongly, mean, 99th percentile and worst, against the exact answer at points
-    /// of the surfaces; of ambient occlusion, differences of ambient visibility. What did not fit the budget is said. For times that
-    /// mean something, let nothing else run meanwhile.
+    /// Varies every setting that trades time or bytes for error (presets, page sizes, lanes, engines, bits, layers,
+    /// rays of sky) and writes a folder: report.html (tables, plots and advice) and report.json (the same for
+    /// programs). Errors of the sun are wrong minutes (mean, 99th percentile and worst) compared with the exact answer
+    /// at points of the surfaces; errors of the sky are differences of ambient occlusion. The report lists what did not
+    /// fit the budget. Times mean little if other programs run meanwhile.
     ///
     /// Exit codes are those of `bake`.
     Cost(Box<CostCommandArgs>),
@@ -48,11 +53,11 @@ pub enum Command {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Preset {
-    /// A look in seconds: a page of 512, 8 bits, 64 rays of sky.
+    /// A preview in seconds: a page of 512, 8 bits, 64 rays of sky.
     Draft,
     /// For a game level: a page of 2048, 16 bits, 128 rays of sky.
     Standard,
-    /// To keep: a page of 4096, 16 bits, up to 8 layers, 512 rays of sky.
+    /// For final use: a page of 4096, 16 bits, up to 8 layers, 512 rays of sky.
     Final,
 }
 
@@ -75,12 +80,12 @@ pub struct BakeArgs {
     /// Replace an older set in that folder.
     #[arg(long)]
     pub force: bool,
-    /// Values for everything below that is not given.
+    /// Defaults of the options below.
     #[arg(long, value_enum, default_value_t = Preset::Standard)]
     pub preset: Preset,
     /// Leave a material out: it is not drawn, not baked and casts nothing. May be given several times.
     ///
-    /// For what no sunbeam should meet: outline hulls, sky domes, collision shells.
+    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells.
     #[arg(long, value_name = "MATERIAL")]
     pub leave_out: Vec<String>,
     #[command(flatten)]
@@ -96,15 +101,16 @@ pub struct BakeArgs {
     pub only: Vec<Only>,
     /// Show where --layers and --bits lost minutes: a picture and the numbers for each page.
     ///
-    /// Writes lost_minutes.N.png, from black (nothing lost) over violet, red and orange to pale yellow (as many minutes as
-    /// the summary and sunbake.json say), and lost_minutes.N.exr with the channels `layers` and `bits`, in minutes.
+    /// Writes lost_minutes.N.png, from black (nothing lost) through violet, red and orange to pale yellow (the most, in
+    /// minutes, is in the summary and in sunbake.json), and lost_minutes.N.exr with the channels `layers` and `bits`,
+    /// in minutes.
     #[arg(long)]
     pub loss_map: bool,
-    /// Print what would be baked, why, at what cost and what would turn it over, and bake nothing.
+    /// Print what would be baked, why, at what cost and what would change that, and bake nothing.
     #[arg(long)]
     pub explain: bool,
     #[command(flatten)]
-    pub output_manners: OutputArgs,
+    pub printing: OutputArgs,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -117,11 +123,11 @@ pub struct PathArgs {
     pub window: Option<[f64; 2]>,
     /// A file of keyed directions or positions instead of a place and a date.
     ///
-    /// JSON: {"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}, ...]}, with an optional "t" in
-    /// each key and optional "angular_radius_deg" and "duration_min" beside "keys".
+    /// JSON: {"keys": [{"azimuth_deg": 90, "elevation_deg": 5}, {"direction": [0, 1, 0]}, ...]}, with an optional "t"
+    /// in each key and optional "angular_radius_deg" and "duration_min" beside "keys".
     ///
-    /// For `bake`, with positions it is the path of a lamp that moves through the scene, and the lamp is baked instead of the
-    /// sun; see its --lamp.
+    /// For `bake`, with positions it is the path of a lamp that moves through the scene, and the lamp is baked instead
+    /// of the sun; see its --lamp.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["place", "date", "utc_offset", "window"])]
     pub path: Option<PathBuf>,
 }
@@ -131,9 +137,9 @@ pub struct PathArgs {
 pub struct LampArgs {
     /// A file of keyed positions: a lamp that moves through the scene, beside the sun.
     ///
-    /// JSON: {"radius_m": 0.05, "keys": [{"t": 0, "position": [0, 2, 0]}, {"t": 1, "position": [3, 2, 0]}]}, in metres of
-    /// the scene's world, joined by straight lines. The lamp's t is the day's: it is at its last key when the sun sets.
-    /// What stands beyond the lamp does not hide it. Bytes and time grow by those of a lane.
+    /// JSON: {"radius_m": 0.05, "keys": [{"t": 0, "position": [0, 2, 0]}, {"t": 1, "position": [3, 2, 0]}]}, in metres
+    /// of the scene's world, joined by straight lines. The lamp's t is the sun's: it is at its last key when the sun
+    /// sets. Surfaces beyond the lamp do not hide it. It takes about the bytes and the time of one lane.
     #[arg(long, value_name = "FILE")]
     pub lamp: Option<PathBuf>,
 }
@@ -155,30 +161,32 @@ pub struct CostArgs {
     pub padding: Option<u32>,
     /// Bits of a stored time. [default: 8 in draft, else 16]
     ///
-    /// 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the bytes.
+    /// 8 bits store an edge to within 1.7 minutes of a summer day, 16 bits to within 0.4 seconds, at twice the bytes.
     #[arg(long, value_name = "8|16", value_parser = parse_bits)]
     pub bits: Option<Bits>,
     /// Most layers of four intervals a texel, 1 to 16. [default: 2, 4 or 8, by preset]
     ///
-    /// Layers that no texel needs are not written. What does not fit is merged at the least loss, and reported.
+    /// Layers that no texel needs are not written. Intervals that do not fit are merged so that least is lost; the loss
+    /// is reported.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
     pub layers: Option<u32>,
     /// Lanes across the sun's disc.
     ///
-    /// One lane takes the sun as a line along its path, which leaves shadow edges hard that run along it. With 3 or 5 they
-    /// soften, in as many steps. Bytes grow with the number, and so does rays' time.
+    /// With one lane the sun is a line along its path, and shadow edges along that path stay hard. With 3 or 5 lanes
+    /// they soften in as many steps. Bytes grow with the number, and so does the time of the rays engine.
     #[arg(long, value_name = "1|3|5", value_parser = parse_lanes, default_value = "1")]
     pub lanes: usize,
     /// How to find the times: exact, rays:N or bisect:N, N from 2 to 65536. [default: exact]
     ///
-    /// exact finds every edge in closed form and misses nothing. The others are there to compare: rays:N asks N suns; edges are off by half a step at most, 1.8 minutes of a summer day at 256. bisect:N asks N suns
-    /// and then halves every change between two of them until it is known to --edge-seconds. Both may miss what is shorter
-    /// than a step. Time grows with N.
+    /// exact finds every edge in closed form and misses nothing. The others are for comparison. rays:N traces rays to N
+    /// positions of the sun; edges are off by at most half a step, 1.8 minutes of a summer day at 256. bisect:N does
+    /// the same and then bisects every change to within --edge-seconds. Both may miss intervals shorter than a step.
+    /// Time grows with N.
     #[arg(long, value_name = "ENGINE", value_parser = parse_engine)]
     pub engine: Option<EngineChoice>,
-    /// How far off an edge may be, in seconds of sun, 0.001 to 3600; for bisect:N. [default: 1]
+    /// Largest error of an edge, in seconds of sun, 0.001 to 3600; for bisect:N. [default: 1]
     ///
-    /// Halving it costs every edge one ray more. 16-bit times of a summer day are steps of 0.8 seconds.
+    /// Halving it costs one ray more an edge. 16-bit times of a summer day are steps of 0.8 seconds.
     #[arg(long, value_name = "S", value_parser = parse_edge_seconds)]
     pub edge_seconds: Option<f64>,
     /// Threads; 0 is one per core.
@@ -194,42 +202,44 @@ pub struct CostArgs {
 pub struct AmbientArgs {
     /// Rays of sky a texel, a power of two from 4 to 65536. [default: 64, 128 or 512, by preset]
     ///
-    /// Time grows with the number. The error of ambient occlusion is about 0.02 with 64 rays, 0.01 with 128, 0.005 with 512.
+    /// Time grows with the number. The error of ambient occlusion is about 0.02 with 64 rays, 0.01 with 128, 0.005 with
+    /// 512.
     #[arg(long, value_name = "N", value_parser = parse_rays)]
     pub ao_rays: Option<u32>,
     /// Only surfaces nearer than M metres hide the sky. [default: all do]
     ///
-    /// A surface at d hides (1 - (d/M)^2)^2 of the light: all of it at contact, nothing at M. For interiors, whose closed
-    /// rooms are black otherwise; a metre or two shows corners.
+    /// A surface at distance d hides (1 - (d/M)^2)^2 of the light: all of it at contact, nothing at M. Use it for
+    /// interiors: closed rooms are black without it. One or two metres show corners.
     #[arg(long, value_name = "M", value_parser = parse_metres)]
     pub ao_distance: Option<f64>,
-    /// Stop a texel's rays once its error is below E with 95 % confidence, 0.001 to 0.5. [default: all have as many]
+    /// Stop a texel's rays once its error is below E with 95 % confidence, 0.001 to 0.5. [default: same number for all]
     ///
-    /// The confidence is that of many texels: 95 of 100 are within. --ao-rays is then the most, 4096 unless given. What is open or closed all around takes 64.
+    /// Of many texels, 95 in 100 are within E. --ao-rays is then the most, 4096 unless given. Texels that see all of
+    /// the sky, or none of it, take 64.
     #[arg(long, value_name = "E", value_parser = parse_error)]
     pub ao_error: Option<f64>,
     /// Spread a texel's rays over N by N points of its surface, 1 to 8.
     ///
-    /// Takes no more rays. Softens what is smaller than a texel.
+    /// Takes no more rays. Softens details smaller than a texel.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
     pub ao_supersample: u32,
     /// Bits of the occlusion textures. [default: 8 in draft, else 16]
     #[arg(long, value_name = "8|16", value_parser = parse_bits)]
     pub ao_bits: Option<Bits>,
-    /// Bake bent normals as well: from where each texel sees the sky.
+    /// Bake bent normals as well: the mean direction in which each texel sees the sky.
     #[arg(long)]
     pub bent: bool,
-    /// Bake how any sky adds up at each texel: sh2, nine coefficients of spherical harmonics.
+    /// Bake sky visibility by direction: sh2, nine coefficients of spherical harmonics.
     ///
-    /// A sky whose brightness changes through the day then lights the scene rightly. Takes 18 bytes a texel and side.
+    /// A sky whose brightness changes through the day then lights the scene correctly. Takes 18 bytes a texel and side.
     #[arg(long, value_name = "BASIS")]
     pub sky: Option<SkyBasis>,
     /// Also write vertices.glb, with ambient occlusion at its vertices as COLOR_0 or _AO.
     ///
-    /// For engines without a second set of texture coordinates. COLOR_0 is shown by every viewer; _AO is a number of its own.
+    /// For engines without a second set of texture coordinates. Every viewer shows COLOR_0; _AO is a separate number.
     #[arg(long, value_name = "ATTRIBUTE", value_parser = parse_attribute)]
     pub ao_vertices: Option<VertexAttribute>,
-    /// Also write ambient light as OpenEXR of 32-bit numbers.
+    /// Also write ambient light as OpenEXR with 32-bit floats.
     #[arg(long)]
     pub exr: bool,
 }
@@ -267,8 +277,8 @@ pub struct CostCommandArgs {
     pub force: bool,
     /// Seconds that all of it may take, 10 to 86400.
     ///
-    /// The most useful measurements come first, and each is predicted before it is begun: one that would not fit is left out,
-    /// with the prediction. Reading the scene and laying it out is not bounded.
+    /// The most useful measurements come first. The time of each is predicted: one that would not fit is left out and
+    /// listed with its prediction. Reading the scene and unwrapping it are not limited.
     #[arg(long, value_name = "S", default_value = "600", value_parser = parse_budget)]
     pub budget: f64,
     /// Leave a material out, as in `bake`. May be given several times.
@@ -276,7 +286,7 @@ pub struct CostCommandArgs {
     pub leave_out: Vec<String>,
     #[command(flatten)]
     pub sun: PathArgs,
-    /// Edge of the page on whose texels knobs are turned, 64 to 16384. Whole bakes have sizes of their own.
+    /// Edge of the page whose texels are sampled, 64 to 16384. Whole bakes have sizes of their own.
     #[arg(long, value_name = "N", default_value_t = 2048, value_parser = clap::value_parser!(u32).range(64..=16384))]
     pub size: u32,
     /// Threads; 0 is one per core.
@@ -286,7 +296,7 @@ pub struct CostCommandArgs {
     #[arg(long, value_name = "SIZE", value_parser = parse_bytes)]
     pub max_memory: Option<u64>,
     #[command(flatten)]
-    pub output_manners: OutputArgs,
+    pub printing: OutputArgs,
 }
 
 #[derive(Debug, ClapArgs)]
@@ -310,99 +320,6 @@ pub struct TexelsArgs {
     pub seed: u64,
 }
 
-fn parse_only(text: &str) -> Result<Only, String> {
-    match text {
-        "intervals" => Ok(Only::Intervals),
-        "ao" => Ok(Only::Ao),
-        _ => Err(format!("`{text}` is nothing to bake: give `intervals` or `ao`")),
-    }
-}
-
-fn parse_rays(text: &str) -> Result<u32, String> {
-    let count: Option<u32> = text.parse().ok().filter(|n| (4..=65_536).contains(n));
-    let count = count.ok_or_else(|| format!("`{text}` is not a number of rays from 4 to 65536"))?;
-    if count.is_power_of_two() {
-        return Ok(count);
-    }
-    let above = count.next_power_of_two();
-    Err(format!("{count} is no power of two, at which rays are spread evenly: give {} or {above}", above / 2))
-}
-
-fn parse_metres(text: &str) -> Result<f64, String> {
-    let valid = |x: &f64| x.is_finite() && *x > 0.0;
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a positive number of metres"))
-}
-
-fn parse_error(text: &str) -> Result<f64, String> {
-    let valid = |x: &f64| (0.001..=0.5).contains(x);
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not an error from 0.001 to 0.5"))
-}
-
-fn parse_attribute(text: &str) -> Result<VertexAttribute, String> {
-    match text {
-        "COLOR_0" => Ok(VertexAttribute::Color),
-        "_AO" => Ok(VertexAttribute::Ao),
-        _ => Err(format!("`{text}` is no attribute for ambient occlusion: give COLOR_0 or _AO")),
-    }
-}
-
-fn parse_bits(text: &str) -> Result<Bits, String> {
-    let count = text.parse().ok().and_then(Bits::from_count);
-    count.ok_or_else(|| format!("`{text}` is no depth of a stored time: give 8 or 16"))
-}
-
-fn parse_lanes(text: &str) -> Result<usize, String> {
-    let count = text.parse().ok().filter(|n| [1, 3, 5].contains(n));
-    count.ok_or_else(|| format!("`{text}` is no number of lanes: give 1, 3 or 5"))
-}
-
-fn parse_window(text: &str) -> Result<[f64; 2], String> {
-    sunbake::sun::parse_window(text).map_err(|e| e.to_string())
-}
-
-fn parse_density(text: &str) -> Result<f64, String> {
-    let valid = |x: &f64| x.is_finite() && *x > 0.0;
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a positive number of texels per metre"))
-}
-
-fn parse_engine(text: &str) -> Result<EngineChoice, String> {
-    if text == "exact" {
-        return Ok(EngineChoice::Exact);
-    }
-    let wrong = || format!("`{text}` is not an engine: give exact, or rays:N or bisect:N with N from 2 to 65536");
-    let (name, count) = text.split_once(':').ok_or_else(wrong)?;
-    let count = count.parse().ok().filter(|n| (2..=65_536).contains(n)).ok_or_else(wrong)?;
-    match name {
-        "rays" => Ok(EngineChoice::Rays(count)),
-        "bisect" => Ok(EngineChoice::Bisect(count)),
-        _ => Err(wrong()),
-    }
-}
-
-fn parse_edge_seconds(text: &str) -> Result<f64, String> {
-    let valid = |seconds: &f64| (0.001..=3600.0).contains(seconds);
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a number of seconds from 0.001 to 3600"))
-}
-
-fn parse_budget(text: &str) -> Result<f64, String> {
-    let valid = |seconds: &f64| (10.0..=86_400.0).contains(seconds);
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a number of seconds from 10 to 86400"))
-}
-
-fn parse_bytes(text: &str) -> Result<u64, String> {
-    let wrong = || format!("`{text}` is not a size: give bytes with K, M or G, as 8G");
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let shift = match text[digits.len()..].to_ascii_uppercase().as_str() {
-        "" => 0,
-        "K" | "KB" | "KIB" => 10,
-        "M" | "MB" | "MIB" => 20,
-        "G" | "GB" | "GIB" => 30,
-        _ => return Err(wrong()),
-    };
-    let count: u64 = digits.parse().map_err(|_| wrong())?;
-    count.checked_mul(1 << shift).filter(|&bytes| bytes > 0).ok_or_else(wrong)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -411,56 +328,5 @@ mod tests {
     #[test]
     fn the_options_are_consistent() {
         Args::command().debug_assert();
-    }
-
-    #[test]
-    fn sizes_are_read_with_their_unit() {
-        assert_eq!(parse_bytes("500M"), Ok(500 << 20));
-        assert_eq!(parse_bytes("8g"), Ok(8 << 30));
-        assert_eq!(parse_bytes("77"), Ok(77));
-        for bad in ["", "G", "8T", "-1", "0", "99999999999999G"] {
-            assert!(parse_bytes(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn lanes_are_one_three_or_five() {
-        assert_eq!(["1", "3", "5"].map(parse_lanes), [Ok(1), Ok(3), Ok(5)]);
-        for bad in ["", "0", "2", "7", "-3", "three"] {
-            assert!(parse_lanes(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn rays_are_powers_of_two_and_the_nearest_are_named() {
-        assert_eq!(["4", "256", "65536"].map(parse_rays), [Ok(4), Ok(256), Ok(65_536)]);
-        assert!(parse_rays("100").is_err_and(|text| text.contains("64 or 128")));
-        for bad in ["", "0", "2", "3", "65537", "131072", "-4", "many"] {
-            assert!(parse_rays(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn engines_outside_their_range_are_refused() {
-        assert_eq!(parse_engine("rays:256"), Ok(EngineChoice::Rays(256)));
-        assert_eq!(parse_engine("bisect:64"), Ok(EngineChoice::Bisect(64)));
-        for bad in ["rays", "rays:", "rays:0", "rays:1", "rays:65537", "rays:-3", "bisect", "bisect:1", "sun:7"] {
-            assert!(parse_engine(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn every_engine_reads_what_it_prints() {
-        for engine in [EngineChoice::Rays(7), EngineChoice::Bisect(65_536)] {
-            assert_eq!(parse_engine(&engine.to_string()), Ok(engine));
-        }
-    }
-
-    #[test]
-    fn edges_are_asked_for_in_seconds() {
-        assert_eq!(parse_edge_seconds("0.5"), Ok(0.5));
-        for bad in ["", "0", "-1", "3601", "nan", "inf", "1s"] {
-            assert!(parse_edge_seconds(bad).is_err(), "{bad}");
-        }
     }
 }

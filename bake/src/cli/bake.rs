@@ -11,7 +11,7 @@ use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let settings = settings(args)?;
-    let progress = ProgressLine::new(args.output_manners.quiet).listening();
+    let progress = ProgressLine::new(args.printing.quiet).listening();
     let target = match &args.output {
         Some(target) if !args.explain => target,
         _ => return explain(args, &settings, &progress),
@@ -23,7 +23,7 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
 }
 
 fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failure> {
-    let OutputArgs { json, quiet, verbose } = args.output_manners;
+    let OutputArgs { json, quiet, verbose } = args.printing;
     let manifest = &report.manifest;
     if !quiet {
         warn_all(&report.warnings, Command::Sunbake);
@@ -47,7 +47,7 @@ fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &ProgressLine) ->
     let prepared = sunbake::prepare(&args.scene, settings, progress);
     progress.clear();
     let prepared = prepared.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
-    let OutputArgs { json, quiet, .. } = args.output_manners;
+    let OutputArgs { json, quiet, .. } = args.printing;
     if !quiet {
         warn_all(&prepared.warnings, Command::Sunbake);
     }
@@ -75,8 +75,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     let engine = cost.engine.unwrap_or(preset.engine);
     if cost.edge_seconds.is_some() && !engine.searches() {
         return Err(Failure::usage(format!(
-            "--edge-seconds means nothing to --engine {engine}, whose edges lie between its suns: leave it out, or give \
-             --engine bisect:N"
+            "--edge-seconds has no effect with --engine {engine}: leave it out, or give --engine bisect:N"
         )));
     }
     let bakes_intervals = args.only.is_empty() || args.only.contains(&Only::Intervals);

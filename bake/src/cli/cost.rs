@@ -1,6 +1,6 @@
 //! `sunbake cost`.
 
-use super::args::CostCommandArgs;
+use super::args::{CostCommandArgs, OutputArgs};
 use super::bake::sun;
 use std::fmt::Write;
 use sunbake::console::{Failure, ProgressLine, print, print_json, warn};
@@ -19,7 +19,7 @@ pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
         threads: args.threads,
         max_memory_bytes: args.max_memory,
     };
-    let progress = ProgressLine::new(args.output_manners.quiet).listening();
+    let progress = ProgressLine::new(args.printing.quiet).listening();
     // The folder before anything is spent: nobody should wait for a report that cannot be kept.
     let folder = folder::begin(&args.output, args.force, REPORT_JSON)?;
     let measured = cost::cost(&args.scene, &settings, folder.path(), &progress);
@@ -31,11 +31,11 @@ pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
 }
 
 fn tell(args: &CostCommandArgs, report: &CostReport) -> Result<(), Failure> {
-    let manners = args.output_manners;
-    if !manners.quiet {
+    let OutputArgs { json, quiet, .. } = args.printing;
+    if !quiet {
         report.warnings.iter().for_each(|sentence| warn(sentence));
     }
-    match (manners.json, manners.quiet) {
+    match (json, quiet) {
         (true, _) => print_json(report),
         (false, true) => Ok(()),
         (false, false) => print(&text(args, report)),
@@ -51,7 +51,7 @@ fn text(args: &CostCommandArgs, report: &CostReport) -> String {
     }
     let rows = || report.sweeps.iter().flat_map(|sweep| &sweep.rows);
     let unmeasured = rows().filter(|row| !row.is_measured()).count();
-    if args.output_manners.verbose {
+    if args.printing.verbose {
         rows().for_each(|row| text += &line(row));
     } else if unmeasured > 0 {
         let _ =

@@ -6,6 +6,7 @@ mod cost;
 mod inspect;
 mod summary;
 mod texels;
+mod values;
 
 use args::{Args, Command};
 use std::process::ExitCode;

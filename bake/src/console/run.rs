@@ -105,8 +105,8 @@ mod tests {
 
     #[test]
     fn a_mistake_is_told_in_one_line_with_the_tip() {
-        let text = "error: unexpected argument '--forse' found\n\n  tip: a similar argument exists: '--force'\n\nUsage: \
-                    sunbake bake --force <SCENE>\n\nFor more information, try '--help'.\n";
+        let text = "error: unexpected argument '--forse' found\n\n  tip: a similar argument exists: '--force'\n\n\
+                    Usage: sunbake bake --force <SCENE>\n\nFor more information, try '--help'.\n";
         assert_eq!(mistake(text), "unexpected argument '--forse' found; a similar argument exists: '--force'");
     }
 }

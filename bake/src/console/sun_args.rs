@@ -13,8 +13,8 @@ pub struct SunArgs {
     pub place: Option<[f64; 2]>,
     /// Local date. [default: 2026-06-21]
     ///
-    /// The path runs from sunrise to sunset of that day, unless a window is given. Sunrise and sunset are those of the centre
-    /// of the sun's disc on a level horizon, without refraction.
+    /// The path runs from sunrise to sunset of that day, unless a window is given. Sunrise and sunset are those of the
+    /// centre of the sun's disc on a level horizon, without refraction.
     #[arg(long, value_name = "YYYY-MM-DD")]
     pub date: Option<Date>,
     /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
@@ -40,8 +40,8 @@ impl SunArgs {
         self.north.unwrap_or(0.0)
     }
 
-    /// The sun that is asked for: this day, or, where nothing names one, the scene's own light. `window` is minutes after
-    /// local midnight.
+    /// The sun that is asked for: this day, or, where nothing names one, the scene's own light. `window` is minutes
+    /// after local midnight.
     pub fn request(&self, window: Option<[f64; 2]>) -> Result<SunRequest, Failure> {
         let day = DayRequest::new(self.place, self.date)?;
         let day = DayRequest { utc_offset_h: self.utc_offset, north_deg: self.north_deg(), window, ..day };

@@ -54,13 +54,13 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     set_threads(args.threads)?;
     make_folder(&args.output)?;
     let set = args.output.join("set");
-    let progress = ProgressLine::new(args.manners.quiet);
+    let progress = ProgressLine::new(args.printing.quiet);
     let scene = args.scene.clone().map_or_else(own_scene, Ok)?;
     let baked = bake(args, &scene, &set, &progress)?;
     let stage = Stage::read(&set)?;
     let look = look(args);
     let shot = Shot::new(&stage, view(&stage, &look)?);
-    let gpu = open_gpu(&look, args.manners.quiet)?;
+    let gpu = open_gpu(&look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &look)?;
     progress.begin("drawing the day, baked and traced", u64::from(args.count));
     let mut columns = Vec::new();
@@ -74,9 +74,9 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     drop(progress);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let summary = Summary::new(contact, set, &baked, &columns, renderer, start.elapsed().as_secs_f64());
-    if args.manners.json {
+    if args.printing.json {
         print_json(&summary)?;
-    } else if !args.manners.quiet {
+    } else if !args.printing.quiet {
         print(&summary.text())?;
     }
     Ok(())

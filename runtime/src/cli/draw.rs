@@ -36,8 +36,8 @@ pub fn open_gpu(look: &LookArgs, quiet: bool) -> Result<Option<Gpu>, Failure> {
     match Gpu::open() {
         Ok(gpu) => Ok(Some(gpu)),
         Err(GpuError::NoAdapter { reason }) => Err(Failure::unavailable(format!(
-            "{live} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), or draw \
-             --technique {}",
+            "{live} by a GPU, and no adapter was found ({reason}): install a Vulkan driver (Mesa's lavapipe will do), \
+             or draw --technique {}",
             instead(look.technique)
         ))),
         Err(error) => Err(error.into()),
@@ -127,8 +127,8 @@ pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
     Ok(View::new(&camera, size, &stage.scene))
 }
 
-/// The set in a folder, with those of its maps that the lights and the model of ambient light call for; or a scene that is
-/// not baked, under a sun.
+/// The set in a folder, with those of its maps that the lights and the model of ambient light call for; or a scene that
+/// is not baked, under a sun.
 pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) -> Result<Stage, Failure> {
     let is_baked = look.technique == TechniqueChoice::Baked;
     let is_volumes = matches!(look.technique, TechniqueChoice::Volumes(_));
@@ -138,7 +138,7 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
         ));
     }
     if output == OutputChoice::Volumes && look.light == LightChoice::Sky {
-        return Err(Failure::usage("the sky throws no volumes: leave --light sky out, or --output volumes"));
+        return Err(Failure::usage("the sky has no shadow volumes: leave --light sky out, or --output volumes"));
     }
     if look.sun_samples > 1 && !is_volumes {
         return Err(Failure::usage("--sun-samples is for --technique volumes; of truth give truth:soft:N"));
@@ -150,12 +150,13 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
     if from.is_file() {
         if look.ambient.model().is_some_and(|(model, _)| model != AmbientModel::Hemisphere) {
             return Err(Failure::usage(
-                "ambient light of a scene that is not baked is its normals': leave --ambient out",
+                "a scene that is not baked has ambient light by its normals only: leave --ambient out",
             ));
         }
         if is_baked {
             return Err(Failure::usage(format!(
-                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes, map or truth:hard",
+                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes, \
+                 map or truth:hard",
                 from.display()
             )));
         }

@@ -25,8 +25,8 @@ pub fn kind(path: &Path) -> Result<Kind, Failure> {
     }
 }
 
-/// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone curve,
-/// so that one bright sample does not outshine a pixel.
+/// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone
+/// curve, so that one bright sample does not outshine a pixel.
 pub fn displayed(light: &Raster<Vec3>, supersample: u32) -> Raster<[u8; 3]> {
     let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
     let reduced = display.reduced(supersample);

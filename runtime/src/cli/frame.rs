@@ -17,7 +17,7 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let t = args.at.on(stage.path.as_ref())?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let moment = moment(&stage, &args.look, t)?;
-    let gpu = open_gpu(&args.look, args.manners.quiet)?;
+    let gpu = open_gpu(&args.look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
     let start = Instant::now();
     match draw(technique.as_mut(), &shot, &moment, args.output)? {
@@ -28,17 +28,18 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let clock = clock_label(stage.path.as_ref(), t);
     let effects = technique.effects(&shot, kind_of(&moment, args.output));
-    if args.manners.explain {
+    if args.printing.explain {
         explain(technique.as_ref(), &effects);
     }
-    if args.manners.json {
+    if args.printing.json {
         let report = json!({
             "file": args.output_file, "t": t, "clock": clock, "size": args.look.size, "seconds": seconds,
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
-            "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(), "details": technique.details(),
+            "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(),
+            "details": technique.details(),
         });
         print_json(&report)?;
-    } else if !args.manners.quiet {
+    } else if !args.printing.quiet {
         let (set, file) = (args.set.display(), args.output_file.display());
         print(&format!("{set} at {clock} -> {file} ({seconds:.2} s on {renderer})\n"))?;
     }

@@ -22,10 +22,10 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     set_threads(args.look.threads)?;
     let stage = stage(&args.set, &args.sun, &args.look, args.output)?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
-    let gpu = open_gpu(&args.look, args.manners.quiet)?;
+    let gpu = open_gpu(&args.look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
     make_folder(&args.output_folder)?;
-    let progress = ProgressLine::new(args.manners.quiet);
+    let progress = ProgressLine::new(args.printing.quiet);
     progress.begin("drawing the day", u64::from(args.count));
     let start = Instant::now();
     let mut small: Vec<(Raster<[u8; 3]>, String)> = Vec::new();
@@ -54,10 +54,10 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let last = moment(&stage, &args.look, (f64::from(args.count) - 0.5) / f64::from(args.count))?;
     let effects = technique.effects(&shot, kind_of(&last, args.output));
-    if args.manners.explain {
+    if args.printing.explain {
         explain(technique.as_ref(), &effects);
     }
-    if args.manners.json {
+    if args.printing.json {
         let report = json!({
             "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
             "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
@@ -65,7 +65,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
             "plan": technique.plan(), "details": technique.details(),
         });
         print_json(&report)?;
-    } else if !args.manners.quiet {
+    } else if !args.printing.quiet {
         let folder = args.output_folder.display();
         print(&format!(
             "{} pictures in {seconds:.1} s on {renderer}\n  {folder}/contact.png   all of them small\n  \

@@ -8,6 +8,7 @@ mod files;
 mod frame;
 mod frames;
 mod place;
+mod values;
 mod when;
 
 use args::{Args, Command};

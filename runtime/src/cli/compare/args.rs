@@ -1,7 +1,8 @@
 //! Every option of `sunplay compare`.
 
-use super::super::args::{RendererChoice, SUN_HEADING, parse_size};
+use super::super::args::{RendererChoice, SUN_HEADING};
 use super::super::place::parse_camera;
+use super::super::values::parse_size;
 use super::super::when::parse_when;
 use clap::Args as ClapArgs;
 use std::path::PathBuf;
@@ -14,8 +15,8 @@ use sunbake_runtime::light::TimeChoice;
 pub struct CompareArgs {
     /// A set's folder, or a scene (.gltf or .glb), which is baked first.
     ///
-    /// A scene is baked twice, with 16 bits and with one lane and three across the sun's disc, for as long as it is compared. A
-    /// set is compared as it is, with what fewer bits and lanes can be made of it.
+    /// A scene is baked twice, with 16 bits and with one lane and three across the sun's disc, for as long as it is
+    /// compared. A set is compared as it is, with what fewer bits and lanes can be made of it.
     pub source: PathBuf,
     /// Folder to write the report to: report.html, report.json and, where something baked was compared, sheet.png.
     #[arg(short, long, value_name = "REPORT")]
@@ -28,19 +29,22 @@ pub struct CompareArgs {
     pub scene: Option<PathBuf>,
     /// What to compare, of: baked, volumes, map, truth, or parts of their names. [default: all]
     ///
-    /// Names are those of the report: baked:16:lanes3:filtered, volumes, map:pcss, truth:hard. A family with parts of a name stands for all that have
-    /// them: `baked:8`, `baked:nearest`, `map`. volumes:MODE and truth:soft:N are compared if they are named.
+    /// Names are those of the report: baked:16:lanes3:filtered, volumes, map:pcss, truth:hard. A family with parts of a
+    /// name stands for all that have them: `baked:8`, `baked:nearest`, `map`. volumes:MODE and truth:soft:N are
+    /// compared if they are named.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub techniques: Vec<String>,
     /// What all are held against: truth:soft, truth:soft:N, truth:hard, or any of what can be compared.
     #[arg(long, value_name = "NAME", default_value = "truth:soft")]
     pub against: String,
-    /// When: HH:MM by the set's local clocks, or a fraction of its path. May be given several times. [default: five times]
+    /// When: HH:MM by the set's local clocks, or a fraction of its path. May be given several times. [default: five
+    /// times]
     ///
     /// Unless given, five times from a low sun in the morning to one in the evening.
     #[arg(long, value_name = "HH:MM|T", value_parser = parse_when)]
     pub at: Vec<TimeChoice>,
-    /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`. May be given several times. [default: three]
+    /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`. May be given several times. [default:
+    /// three]
     ///
     /// Unless given, three cameras that see the edges of shadows: the scene's own, all of it, or a part from close by.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, allow_hyphen_values = true)]
@@ -48,7 +52,8 @@ pub struct CompareArgs {
     /// Width and height of pictures, in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "640x360")]
     pub size: [u32; 2],
-    /// How often each picture is drawn and timed, 1 to 100; the least of its times counts. [default: 3, or 1 without a real GPU]
+    /// How often each picture is drawn and timed, 1 to 100; the least of its times counts. [default: 3, or 1 without a
+    /// real GPU]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     pub rounds: Option<u32>,
     /// Edge of shadow maps in texels, 16 to 16384. [default: 2048]
@@ -64,9 +69,9 @@ pub struct CompareArgs {
     pub leave_out: Vec<String>,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.
     ///
-    /// Keys: visibility (mean error), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside (mean errors
-    /// there), dissimilarity (1 less the structural similarity), frame_ms, mib. The report is written all the same. Name what it is
-    /// to hold for with --techniques.
+    /// Keys: visibility (mean error), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside
+    /// (mean errors there), dissimilarity (1 less the structural similarity), frame_ms, mib. The report is written all
+    /// the same. Name what it is to hold for with --techniques.
     #[arg(long, value_name = "KEY=N", value_delimiter = ',')]
     pub fail_above: Vec<Limit>,
     #[command(flatten, next_help_heading = SUN_HEADING)]

@@ -66,8 +66,8 @@ fn source(args: &CompareArgs) -> Result<CompareSource, Failure> {
     }
     if args.sun.is_given() || args.page_size.is_some() || !args.leave_out.is_empty() {
         return Err(Failure::usage(
-            "a set has the sun, the texels and the materials that it was baked with: leave --place, --date, --utc-offset, \
-             --north, --page-size and --leave-out out, or compare the scene",
+            "a set has the sun, the texels and the materials that it was baked with: leave --place, --date, \
+             --utc-offset, --north, --page-size and --leave-out out, or compare the scene",
         ));
     }
     Ok(CompareSource::Set { folder: from.clone(), scene: args.scene.clone() })
