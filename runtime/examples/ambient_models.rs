@@ -1,10 +1,10 @@
-//! What each model of ambient light shows, beside one another, and what it reads for it.
+//! The models of ambient light side by side, and the bytes that each reads.
 //!
 //!     cargo run --release --example ambient_models -- SET SHEET.png [T]
 //!
-//! Draws a set that was baked with `--bent --sky sh2` through the scene's default camera at path time T (0.12 unless given)
-//! on the CPU: by the normal alone, with ambient occlusion, with bent normals and with the sky in harmonics; the sky alone,
-//! the sun with it, and how far the first is from what the normal alone says.
+//! Draws a set that was baked with `--bent --sky sh2` through the scene's default camera at path time T (0.12 unless
+//! given) on the CPU: by the normal alone, with ambient occlusion, with bent normals and with the sky in spherical
+//! harmonics; the sky alone, the sun with it, and how far the first is from what the normal alone says.
 
 mod common;
 
@@ -78,7 +78,7 @@ fn table(columns: &[Column], clock: &str) -> PictureTable {
     };
     PictureTable {
         title: vec![
-            format!("Light from all around, {clock}"),
+            format!("Ambient light, {clock}"),
             "below each column, what it reads and the time of a frame".into(),
         ],
         rows: vec![

@@ -2,8 +2,9 @@
 //!
 //!     cargo run --release --example shadow_maps -- SHEET.png [SCENE [HH:MM [MAP_SIZE]]]
 //!
-//! Draws our own scene from nearby, or another through its default camera, on a June day in the desert, at 17:00 unless told otherwise,
-//! with maps of 1024 texels. Hard variants are held against truth of the sun's centre, soft ones against truth of its disc.
+//! Draws our own scene from nearby, or another through its default camera, on a June day in the desert, at 17:00
+//! unless told otherwise, with maps of 1024 texels. Hard variants are held against truth of the sun's centre, soft
+//! ones against truth of its disc.
 
 mod common;
 
@@ -23,7 +24,8 @@ use sunbake_runtime::{Camera, Moment, Raster, Shot, Stage, View};
 
 /// Size of each picture.
 const SIZE: [u32; 2] = [330, 220];
-/// Where our own scene is looked at from, and what is looked at, world space: the canopy's shadow, the pumps and the wall.
+/// Where our own scene is looked at from, and what is looked at, world space: the canopy's shadow, the pumps and the
+/// wall.
 const EYE_M: DVec3 = DVec3::new(18.0, 3.0, 4.0);
 const TARGET_M: DVec3 = DVec3::new(5.0, 0.8, -3.0);
 /// Columns that stand side by side.

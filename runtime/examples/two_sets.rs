@@ -2,10 +2,10 @@
 //!
 //!     cargo run --release --example two_sets -- SET OTHER SHEET.png [T...]
 //!
-//! Draws both sets through the scene's default camera at path times T (eight over the day unless given) on the CPU, as
-//! lit pictures, and their difference of visibility. Prints, for each time, the mean error of each against soft truth, how
-//! far apart the two are, and which share of each one's pixels is visibly wrong away from every edge: of a triangle, or of
-//! a shadow in the picture or in truth.
+//! Draws both sets through the scene's default camera at path times T (eight over the day unless given) on the CPU,
+//! as lit pictures, and their difference of visibility. Prints, for each time, the mean error of each against soft
+//! truth, how far apart the two are, and which share of each one's pixels is visibly wrong away from every edge: of a
+//! triangle, or of a shadow in the picture or in truth.
 
 mod common;
 

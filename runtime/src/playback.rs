@@ -1,6 +1,5 @@
-//! Maps evaluated on the CPU: twins of `filter_nearest.wgsl`, `filter_bilinear.wgsl`, `sun_baked.wgsl`,
-//! `sun_baked_point.wgsl`, `lamp_baked.wgsl` and `ambient_*.wgsl`, around [`sunbake::maps::soft_visibility`] and
-//! [`sunbake::maps::hard_visibility`].
+//! Maps evaluated on the CPU: twins of the shaders in `wgsl/baked`, `wgsl/ambient` and `wgsl/lamp/baked*.wgsl`, around
+//! [`sunbake::maps::soft_visibility`] and [`sunbake::maps::hard_visibility`].
 
 use crate::light::{Daylight, LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
@@ -109,11 +108,18 @@ impl<'a> Page<'a> {
     }
 
     /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its ball above the surface's plane;
-    /// `way_m` leads from the surface to the lamp. Twin of `lamp_baked.wgsl`.
-    pub fn lamp_visibility(&self, page_uv: Vec2, face: Vec3, way_m: Vec3, filter: Filter, lamp: &LampMoment) -> f32 {
+    /// `to_lamp_m` leads from the surface to the lamp. Twin of `lamp/baked.wgsl`.
+    pub fn lamp_visibility(
+        &self,
+        page_uv: Vec2,
+        face: Vec3,
+        to_lamp_m: Vec3,
+        filter: Filter,
+        lamp: &LampMoment,
+    ) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
-        let ball_share = (0.5 + face.dot(way_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
-        if ball_share <= 0.0 || way_m.length_squared() > lamp.range_m * lamp.range_m {
+        let ball_share = (0.5 + face.dot(to_lamp_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
+        if ball_share <= 0.0 || to_lamp_m.length_squared() > lamp.range_m * lamp.range_m {
             return 0.0;
         }
         let seen = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
@@ -121,8 +127,7 @@ impl<'a> Page<'a> {
     }
 
     /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the
-    /// surface. Twin of `ambient_hemisphere.wgsl`, `ambient_occlusion.wgsl`, `ambient_bent.wgsl` and
-    /// `ambient_sky.wgsl`.
+    /// surface. Twin of the shaders in `wgsl/ambient`.
     pub fn ambient_light(&self, page_uv: Vec2, normal: Vec3, is_back: bool, sky: &AmbientSky) -> Vec3 {
         let light = sky.daylight;
         let hemisphere = |share: f32| light.ground_light.lerp(light.sky_light, share);

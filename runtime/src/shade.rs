@@ -1,4 +1,4 @@
-//! Lit pictures on the CPU, from any technique's visibility: twin of `lit_fragment.wgsl` and `shade.wgsl`.
+//! Lit pictures on the CPU, from any technique's visibility: twin of `surface/lit_fragment.wgsl` and `surface/shade.wgsl`.
 
 use crate::image::Raster;
 use crate::light::Moment;
@@ -65,8 +65,8 @@ fn lit_surface(
     };
     let light = shade(material, base_color.xyz(), normal, moment, visible.sun, ambient);
     let of_lamp = moment.lamp.filter(|_| !material.is_unlit).map(|lamp| {
-        let way_m = lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3();
-        lamp.on(base_color.xyz(), normal, way_m, visible.lamp)
+        let to_lamp_m = lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3();
+        lamp.on(base_color.xyz(), normal, to_lamp_m, visible.lamp)
     });
     light + of_lamp.unwrap_or(Vec3::ZERO)
 }

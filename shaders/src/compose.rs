@@ -1,4 +1,4 @@
-//! Puts shaders together: constants, then files, in the order in which they would be read.
+//! Composes shaders: constants, then files in reading order.
 
 use crate::uniforms::{WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT};
 use crate::vertex::{DEPTH_VERTEX_WGSL, surface_vertex_wgsl};
@@ -16,16 +16,16 @@ pub(crate) use wgsl;
 pub struct SurfaceVariant {
     /// Its material has a base colour texture.
     pub is_textured: bool,
-    /// Its mesh has colours.
+    /// Its mesh has vertex colours.
     pub has_vertex_color: bool,
-    /// It has holes.
-    pub is_cut: bool,
+    /// It has an alpha mask.
+    pub has_alpha_mask: bool,
 }
 
 /// How stored times become a pixel's visibility.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Filter {
-    /// The texel under the pixel: blocky, as in the chapter.
+    /// The texel under the pixel, unfiltered: blocky, as in *GPU Gems* chapter 13.
     Nearest,
     /// Four texels, each evaluated, then blended.
     #[default]
@@ -35,11 +35,11 @@ pub enum Filter {
 /// A lane across the sun's disc, as a page stores it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaneVariant {
-    /// Number of layers.
+    /// Number of layers; 0 where no texel of the page ever sees this lane.
     pub layer_count: u32,
-    /// Share of the light.
+    /// Its share of the sun's light, from 0 to 1.
     pub weight: f32,
-    /// The lane's chord across the disc, as a share of the diameter: how much narrower its window is.
+    /// Its chord across the disc, as a share of the diameter. Its window is narrower by this factor.
     pub chord: f32,
 }
 
@@ -48,45 +48,45 @@ pub struct LaneVariant {
 pub struct PageVariant {
     /// 255 or 65535.
     pub max_code: u16,
-    /// In the order of their layers. Empty: there is no sun in the set, or no texel of the page ever sees it.
+    /// In the order of their layers. Empty where the set has no sun, or where no texel of the page ever sees it.
     pub lanes: Vec<LaneVariant>,
-    /// Whether the sun has no width: it is seen or not, and nothing measures how much of it.
+    /// Whether the sun has no width, so that it is visible or not.
     pub is_point_sun: bool,
-    /// Array layers of the lamp's textures. None: there is no lamp in the set, or no texel of the page ever sees it.
+    /// Layers of the lamp's textures. 0 where the set has no lamp, or where no texel of the page ever sees it.
     pub lamp_layer_count: u32,
-    /// What ambient light is made of.
+    /// How ambient light is computed.
     pub ambient: AmbientModel,
-    /// Whether maps of ambient light hold what backs see as well.
+    /// Whether maps of ambient light have a slice for the backs of surfaces.
     pub has_backs: bool,
 }
 
-/// What ambient light on a page's surfaces is made of: each knows more than the one before it, and reads more.
+/// How ambient light on a page's surfaces is computed. Each model reads more than the one before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub enum AmbientModel {
-    /// The normal alone: `(1 + n.y) / 2` of sky. No map.
+    /// Sky and ground by the normal alone: `(1 + n.y) / 2` of the sky. Reads no map.
     #[default]
     Hemisphere,
-    /// That, times ambient occlusion.
+    /// The same, times ambient occlusion.
     Occlusion,
-    /// The same about the bent normal.
+    /// The same with the bent normal instead of the normal.
     Bent,
-    /// The sky of the moment in spherical harmonics, against each texel's visibility of it.
+    /// The sky of the moment in spherical harmonics, times each texel's visibility of it.
     Sky,
 }
 
 impl PageVariant {
-    /// Array layers of the page's `rise` and of its `fall` texture. None: no texture, no binding and no loop.
+    /// Layers of the page's `rise` texture, and of its `fall` texture. 0: no texture, no binding and no loop.
     pub fn layer_count(&self) -> u32 {
         self.lanes.iter().map(|lane| lane.layer_count).sum()
     }
 }
 
-/// The depth pass: entry points `depth_vertex`, or for surfaces with holes `surface_vertex` and `depth_fragment`.
+/// The depth pass: entry points `depth_vertex`, or for surfaces with alpha masks `surface_vertex` and `depth_fragment`.
 pub fn depth_shader(surface: SurfaceVariant) -> String {
-    let mut text = [wgsl!("frame"), wgsl!("place")].concat();
-    if surface.is_cut {
+    let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection")].concat();
+    if surface.has_alpha_mask {
         push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
-        text.push_str(wgsl!("depth_fragment"));
+        text.push_str(wgsl!("frame/depth_fragment"));
     } else {
         text.push_str(DEPTH_VERTEX_WGSL);
     }
@@ -100,20 +100,20 @@ pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -
     text
 }
 
-/// All of the lit pass after what is known of the sun.
+/// The rest of the lit pass, after the sun's visibility.
 pub(crate) fn end_of_lit(text: &mut String, page: &PageVariant, filter: Filter) {
     push_ambient(text, page);
-    text.push_str(wgsl!("shade"));
+    text.push_str(wgsl!("surface/shade"));
     push_lamp(text, page, filter);
-    text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp_shade") } else { wgsl!("lamp_shade_none") });
-    text.push_str(wgsl!("surface"));
-    text.push_str(wgsl!("lit_fragment"));
+    text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp/shade") } else { wgsl!("lamp/shade_none") });
+    text.push_str(wgsl!("surface/surface"));
+    text.push_str(wgsl!("surface/lit_fragment"));
 }
 
 /// The visibility pass: entry points `surface_vertex` and `visibility_fragment`.
 pub fn visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = shading(surface, page, filter);
-    text.push_str(wgsl!("visibility_fragment"));
+    text.push_str(wgsl!("surface/visibility_fragment"));
     text
 }
 
@@ -121,13 +121,20 @@ pub fn visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Fi
 pub fn lamp_visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = on_surface(surface, page);
     push_lamp(&mut text, page, filter);
-    text.push_str(wgsl!("lamp_visibility_fragment"));
+    text.push_str(wgsl!("lamp/visibility_fragment"));
     text
 }
 
 /// The background: entry points `screen_vertex` and `sky_fragment`.
 pub fn sky_shader() -> String {
-    [&constants(), wgsl!("frame"), wgsl!("sky_color"), wgsl!("screen"), wgsl!("sky")].concat()
+    [
+        &constants(),
+        wgsl!("frame/frame"),
+        wgsl!("frame/sky_color"),
+        wgsl!("frame/screen_vertex"),
+        wgsl!("frame/sky_fragment"),
+    ]
+    .concat()
 }
 
 fn constants() -> String {
@@ -137,79 +144,105 @@ fn constants() -> String {
     )
 }
 
-/// What every program that lights a surface begins with.
+/// How every program that lights a surface begins.
 pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
-    let mut text = [wgsl!("frame"), wgsl!("place")].concat();
+    let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection")].concat();
     push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
-    text.push_str(wgsl!("facing"));
-    if page.layer_count() + page.lamp_layer_count > 0 {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
-    }
+    text.push_str(wgsl!("surface/facing"));
+    push_evaluation(&mut text, page);
     text
 }
 
-/// Light from all around.
+/// What evaluates a page's maps: the texels around a page coordinate, and the lit share of stored times.
+fn push_evaluation(text: &mut String, page: &PageVariant) {
+    let (has_sun, has_lamp) = (page.layer_count() > 0, page.lamp_layer_count > 0);
+    if has_sun || has_lamp || page.ambient != AmbientModel::Hemisphere {
+        text.push_str(wgsl!("baked/footprint"));
+    }
+    if has_sun || has_lamp {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
+    }
+    if has_sun && page.is_point_sun {
+        text.push_str(wgsl!("baked/hard_visibility"));
+    }
+    if has_lamp || (has_sun && !page.is_point_sun) {
+        text.push_str(wgsl!("baked/soft_visibility"));
+    }
+}
+
+/// Ambient light.
 fn push_ambient(text: &mut String, page: &PageVariant) {
-    text.push_str(if page.has_backs { wgsl!("side_two") } else { wgsl!("side_one") });
+    text.push_str(if page.has_backs { wgsl!("ambient/side_two") } else { wgsl!("ambient/side_one") });
     if matches!(page.ambient, AmbientModel::Occlusion | AmbientModel::Bent) {
-        text.push_str(wgsl!("ambient_visibility"));
+        text.push_str(wgsl!("ambient/visibility"));
     }
     text.push_str(match page.ambient {
-        AmbientModel::Hemisphere => wgsl!("ambient_hemisphere"),
-        AmbientModel::Occlusion => wgsl!("ambient_occlusion"),
-        AmbientModel::Bent => wgsl!("ambient_bent"),
-        AmbientModel::Sky => wgsl!("ambient_sky"),
+        AmbientModel::Hemisphere => wgsl!("ambient/hemisphere"),
+        AmbientModel::Occlusion => wgsl!("ambient/occlusion"),
+        AmbientModel::Bent => wgsl!("ambient/bent"),
+        AmbientModel::Sky => wgsl!("ambient/sky"),
     });
 }
 
-/// What is seen of the lamp.
+/// The visible share of the lamp.
 fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
     if page.lamp_layer_count == 0 {
-        text.push_str(wgsl!("lamp_none"));
+        text.push_str(wgsl!("lamp/none"));
         return;
     }
-    text.push_str(wgsl!("lamp"));
-    text.push_str(wgsl!("lamp_soft_visibility"));
+    text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/maps"), wgsl!("lamp/baked_texel")].concat());
     text.push_str(match filter {
-        Filter::Nearest => wgsl!("lamp_filter_nearest"),
-        Filter::Bilinear => wgsl!("lamp_filter_bilinear"),
+        Filter::Nearest => wgsl!("lamp/baked_nearest"),
+        Filter::Bilinear => wgsl!("lamp/baked_bilinear"),
     });
-    text.push_str(wgsl!("way_to_lamp"));
-    text.push_str(wgsl!("lamp_baked"));
+    text.push_str(wgsl!("lamp/to_lamp"));
+    text.push_str(wgsl!("lamp/baked"));
 }
 
 fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = on_surface(surface, page);
     if page.layer_count() == 0 {
-        text.push_str(wgsl!("sun_none"));
+        text.push_str(wgsl!("baked/sun_none"));
         return text;
     }
-    text.push_str(if page.is_point_sun { wgsl!("hard_visibility") } else { wgsl!("soft_visibility") });
+    text.push_str(wgsl!("baked/sun_maps"));
     text.push_str(&disc_visibility(&page.lanes, page.is_point_sun));
     text.push_str(match filter {
-        Filter::Nearest => wgsl!("filter_nearest"),
-        Filter::Bilinear => wgsl!("filter_bilinear"),
+        Filter::Nearest => wgsl!("baked/sun_nearest"),
+        Filter::Bilinear => wgsl!("baked/sun_bilinear"),
     });
-    text.push_str(if page.is_point_sun { wgsl!("sun_baked_point") } else { wgsl!("sun_baked") });
+    text.push_str(if page.is_point_sun { wgsl!("baked/sun_point") } else { wgsl!("baked/sun") });
     text
 }
 
-/// A vertex stage with its varyings, and what is known of the surface's colour and holes.
+/// A vertex stage with its varyings, and the surface's colour and alpha mask.
 pub(crate) fn push_alpha_mask(text: &mut String, surface: SurfaceVariant, vertex: &str) {
     text.push_str(&constants());
     text.push_str(vertex);
-    text.push_str(if surface.is_textured { wgsl!("texture_color") } else { wgsl!("texture_none") });
-    text.push_str(if surface.has_vertex_color { wgsl!("vertex_color") } else { wgsl!("vertex_color_none") });
-    if surface.is_cut {
-        text.push_str(wgsl!("alpha_cut"));
-        text.push_str(if surface.is_textured { wgsl!("texel_alpha") } else { wgsl!("texel_alpha_none") });
+    text.push_str(if surface.is_textured {
+        wgsl!("surface/texture_color")
     } else {
-        text.push_str(wgsl!("alpha_none"));
+        wgsl!("surface/texture_color_none")
+    });
+    text.push_str(if surface.has_vertex_color {
+        wgsl!("surface/vertex_color")
+    } else {
+        wgsl!("surface/vertex_color_none")
+    });
+    if surface.has_alpha_mask {
+        text.push_str(wgsl!("surface/alpha_mask"));
+        text.push_str(if surface.is_textured {
+            wgsl!("surface/texel_alpha")
+        } else {
+            wgsl!("surface/texel_alpha_none")
+        });
+    } else {
+        text.push_str(wgsl!("surface/alpha_mask_none"));
     }
 }
 
-/// The lanes' sum, written out: their number, layers, weights and chords are constants of the page.
+/// The sum over lanes, written out: their number, layers, weights and chords are constants of the page.
 fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
     let mut text = String::from("fn disc_visibility(texel: vec2<i32>) -> f32 {\n    var seen = 0.0;\n");
     let mut first = 0;
@@ -220,7 +253,7 @@ fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
             if is_point_sun { ("hard", String::new()) } else { ("soft", format!(", frame.width_t * {chord:?}")) };
         let _ = writeln!(
             text,
-            "    seen += {weight:?} * {kind}_visibility(texel, vec2<i32>({first}, {end}), frame.t{width});"
+            "    seen += {weight:?} * {kind}_visibility(rise_map, fall_map, texel, vec2<i32>({first}, {end}), frame.t{width});"
         );
         first = end;
     }

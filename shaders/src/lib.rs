@@ -1,11 +1,34 @@
-//! Every WGSL shader of sunbake, with the Rust structs that mirror their uniforms.
+//! Every WGSL shader of sunbake, with the Rust structs that mirror its uniforms.
 //!
-//! A shader is a plain concatenation of short files from `wgsl/`, one stage or one question a file. Where a scene does
-//! not call for something (a texture, holes, a sun), the file that answers is replaced by one that answers with a
-//! constant, so that what is not called for is not in the program at all: see [`SurfaceVariant`] and [`PageVariant`].
-//! Numbers that Rust and WGSL share are written once, in Rust, and put before the files as constants.
+//! A shader is a plain concatenation of short files from `wgsl/`, with one stage or one question per file, in a
+//! folder per technique. Where a scene does not call for something (a texture, an alpha mask, a sun), the file that
+//! answers is replaced by one that answers with a constant, so that unused code is not in the program at all: see
+//! [`SurfaceVariant`] and [`PageVariant`]. Numbers that Rust and WGSL share are written once, in Rust, and emitted as
+//! constants.
 //!
-//! Per scene: one program per variant that occurs in it. Per frame: one [`FrameUniform`].
+//! Bind groups: 0 holds [`FrameUniform`], materials, [`LampUniform`] and [`SkyUniform`]; 1 the maps of an atlas page,
+//! or the points of shadow volumes, or the matrix of a shadow map that is drawn; 2 the base colour texture; 3 shadow
+//! maps that are read.
+//!
+//! ```
+//! use sunbake_shaders::{Filter, LaneVariant, PageVariant, SurfaceVariant, attributes, lit_shader};
+//!
+//! // A page with one lane of two layers: up to eight intervals per texel, stored in 16 bits.
+//! let page = PageVariant {
+//!     max_code: 65_535,
+//!     lanes: vec![LaneVariant { layer_count: 2, weight: 1.0, chord: 1.0 }],
+//!     ..PageVariant::default()
+//! };
+//! let surface = SurfaceVariant { is_textured: true, ..SurfaceVariant::default() };
+//! let wgsl = lit_shader(surface, &page, Filter::Bilinear);
+//! assert!(wgsl.contains("fn surface_vertex") && wgsl.contains("fn lit_fragment"));
+//! // The vertex buffers that it reads, attribute by attribute.
+//! assert!(attributes(surface).iter().any(|attribute| attribute.name == "image_uv"));
+//!
+//! // Without times of the sun there is no code that reads them.
+//! let dark = lit_shader(surface, &PageVariant::default(), Filter::Bilinear);
+//! assert!(wgsl.contains("rise_map") && !dark.contains("rise_map"));
+//! ```
 
 mod compose;
 mod shadow_maps;
@@ -31,7 +54,7 @@ pub use volumes::{
     volume_shader,
 };
 
-/// How an engine of one's own evaluates a map, in WGSL.
+/// How to evaluate a map in another engine, in WGSL.
 pub const ENGINE_WGSL: &str = include_str!("engine/soft_visibility.wgsl");
-/// How an engine of one's own evaluates a map, in GLSL.
+/// How to evaluate a map in another engine, in GLSL.
 pub const ENGINE_GLSL: &str = include_str!("engine/soft_visibility.glsl");

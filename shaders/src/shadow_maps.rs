@@ -1,4 +1,4 @@
-//! Shaders of shadow maps, and of surfaces that are lit by them.
+//! Shaders of shadow maps, and of surfaces that read them.
 
 use crate::compose::{end_of_lit, on_surface, wgsl};
 use crate::uniforms::MOST_SHADOW_VIEWS;
@@ -6,119 +6,122 @@ use crate::vertex::{DEPTH_VERTEX_WGSL, surface_vertex_wgsl};
 use crate::{Filter, PageVariant, SurfaceVariant};
 use std::fmt::Write;
 
-/// What becomes of the depths around a place.
+/// How many comparisons are made around a point of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ShadowFilter {
     /// One comparison.
     One,
-    /// Sixteen over four by four texels.
+    /// Sixteen comparisons over four by four texels.
     Sixteen,
-    /// Four of these.
+    /// Four of the sixteen; which four differs between neighbouring pixels.
     Four,
-    /// As many as the penumbra is wide.
+    /// A filter as wide as the penumbra.
     Penumbra,
 }
 
-/// What compares.
+/// What compares depths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ShadowTap {
     /// The shader.
     Manual,
-    /// A sampler that does not filter.
+    /// A comparison sampler that does not filter.
     Nearest,
-    /// A sampler that filters.
+    /// A comparison sampler that filters.
     Filtered,
-    /// The shader, which filters what a sampler gathers.
+    /// The shader, which compares and filters the four texels that a sampler gathers.
     Gathered,
 }
 
-/// Which map a place is looked up on.
+/// Which map a point is looked up on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ShadowViews {
-    /// There is one.
+    /// There is only one.
     One,
     /// The first that holds it.
     First,
-    /// The first that holds it, and towards its border the next.
+    /// The first that holds it, blended towards its border with the next.
     Blended,
 }
 
-/// What moves a receiver, in the terms of the runtime's `Bias`, and how far its filter reaches.
+/// The bias of a receiver, as in the runtime's `Bias`, and how far its filter reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowBias {
     /// Along the light, metres.
     pub constant_m: f32,
     /// Along the light, texels.
     pub constant_texels: f32,
-    /// Along the light, times the rise of the plane.
+    /// Along the light, as a multiple of how much the receiver's plane rises within reach.
     pub slope: f32,
-    /// Along the normal, times the distance of a corner from the plane.
+    /// Along the normal, as a multiple of the distance between the plane and the corner of a texel.
     pub normal: f32,
-    /// How far away the rise and the corner are, in texels.
+    /// The reach, in texels.
     pub reach: f32,
-    /// Whether texels are compared with the plane.
+    /// Whether texels are compared with the receiver's plane at their own centre.
     pub has_plane: bool,
 }
 
-/// What lights a surface that a map's shadows fall on.
+/// Where a surface's shader finds the sun's visibility.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ShadowSource {
-    /// Nothing: the sun is down.
+    /// The sun is down: 0.
     Down,
-    /// The sun, which nothing hides.
+    /// Nothing hides the sun.
     Open,
-    /// What maps tell.
+    /// Shadow maps.
     Maps {
-        /// What becomes of depths.
+        /// How many comparisons.
         filter: ShadowFilter,
         /// What compares.
         tap: ShadowTap,
         /// Which map.
         views: ShadowViews,
-        /// What moves a receiver.
+        /// The bias.
         bias: ShadowBias,
-        /// From how near to its border a map of several is not looked up, in texels.
+        /// Margin at the border of a map, where another map is used, in texels.
         margin_texels: f32,
     },
-    /// A blurred picture of what casts, on a map's place.
+    /// A blurred mask of casters, as the sun sees it.
     Mask,
-    /// A picture of what casts, laid flat, as the camera sees it.
+    /// A mask of casters projected flat onto the ground, as the camera sees it.
     Flat,
 }
 
-/// The depths of a map: entry points `depth_vertex`, or for surfaces with holes `surface_vertex` and `depth_fragment`.
+/// The depths of a map: entry points `depth_vertex`, or for surfaces with alpha masks `surface_vertex` and
+/// `depth_fragment`.
 pub fn shadow_depth_shader(surface: SurfaceVariant) -> String {
-    let mut text = [wgsl!("frame"), wgsl!("shadow_view"), wgsl!("place_in_map")].concat();
-    if surface.is_cut {
+    let mut text = [wgsl!("frame/frame"), wgsl!("shadow_maps/view"), wgsl!("shadow_maps/map_projection")].concat();
+    if surface.has_alpha_mask {
         crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
-        text.push_str(wgsl!("depth_fragment"));
+        text.push_str(wgsl!("frame/depth_fragment"));
     } else {
         text.push_str(DEPTH_VERTEX_WGSL);
     }
     text
 }
 
-/// A picture of what casts on the ground, on a map or laid flat as the camera sees it: entry points `mask_vertex`, or for surfaces
-/// with holes `surface_vertex`, and `mask_fragment`.
+/// A mask of casters on the ground, on a map or projected flat as the camera sees it: entry points `mask_vertex`, or
+/// for surfaces with alpha masks `surface_vertex`, and `mask_fragment`.
 pub fn shadow_mask_shader(surface: SurfaceVariant, is_flat: bool) -> String {
-    let place = if is_flat { wgsl!("place_flat") } else { wgsl!("place_in_map") };
-    let mut text = [wgsl!("frame"), wgsl!("shadow_view"), place, wgsl!("ground_height")].concat();
-    if surface.is_cut {
+    let place = if is_flat { wgsl!("shadow_maps/flat_projection") } else { wgsl!("shadow_maps/map_projection") };
+    let mut text =
+        [wgsl!("frame/frame"), wgsl!("shadow_maps/view"), place, wgsl!("shadow_maps/ground_height")].concat();
+    if surface.has_alpha_mask {
         let height = ("height_m", "height_above_ground(vertex.position_m)");
         crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, Some(height)));
     } else {
-        text.push_str(&[wgsl!("mask_vertex"), wgsl!("alpha_none")].concat());
+        text.push_str(&[wgsl!("shadow_maps/mask_vertex"), wgsl!("surface/alpha_mask_none")].concat());
     }
-    text.push_str(wgsl!("mask_fragment"));
+    text.push_str(wgsl!("shadow_maps/mask_fragment"));
     text
 }
 
 /// A blur: entry points `screen_vertex`, `blur_across_fragment` and `blur_down_fragment`.
 pub fn blur_shader() -> String {
-    [wgsl!("screen"), wgsl!("blur_fragment")].concat()
+    [wgsl!("frame/screen_vertex"), wgsl!("shadow_maps/blur_fragment")].concat()
 }
 
-/// The lit pass under a sun that maps tell of: entry points `surface_vertex` and `lit_fragment`. A lamp's times are the page's.
+/// The lit pass under shadow maps: entry points `surface_vertex` and `lit_fragment`. The lamp is read from the page's
+/// maps.
 pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter, sun: &ShadowSource) -> String {
     let mut text = on_surface(surface, page);
     push_sun(&mut text, sun);
@@ -126,19 +129,19 @@ pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Fi
     text
 }
 
-/// The visibility pass under a sun that maps tell of: entry points `surface_vertex` and `visibility_fragment`.
+/// The visibility pass under shadow maps: entry points `surface_vertex` and `visibility_fragment`.
 pub fn mapped_visibility_shader(surface: SurfaceVariant, sun: &ShadowSource) -> String {
     let mut text = on_surface(surface, &PageVariant::default());
     push_sun(&mut text, sun);
-    text.push_str(wgsl!("visibility_fragment"));
+    text.push_str(wgsl!("surface/visibility_fragment"));
     text
 }
 
 fn push_sun(text: &mut String, sun: &ShadowSource) {
     match sun {
-        ShadowSource::Down => text.push_str(wgsl!("sun_none")),
-        ShadowSource::Open => text.push_str(wgsl!("sun_open")),
-        ShadowSource::Flat => text.push_str(wgsl!("sun_flat_mask")),
+        ShadowSource::Down => text.push_str(wgsl!("baked/sun_none")),
+        ShadowSource::Open => text.push_str(wgsl!("shadow_maps/sun_open")),
+        ShadowSource::Flat => text.push_str(wgsl!("shadow_maps/sun_flat_mask")),
         ShadowSource::Mask => {
             let bias = ShadowBias {
                 constant_m: 0.0,
@@ -149,29 +152,29 @@ fn push_sun(text: &mut String, sun: &ShadowSource) {
                 has_plane: false,
             };
             push_receiver(text, &bias, 0.0);
-            text.push_str(wgsl!("sun_ground_mask"));
+            text.push_str(wgsl!("shadow_maps/sun_ground_mask"));
         }
         ShadowSource::Maps { filter, tap, views, bias, margin_texels } => {
             push_receiver(text, bias, *margin_texels);
             text.push_str(match tap {
-                ShadowTap::Manual => wgsl!("shadow_tap_manual"),
-                ShadowTap::Nearest => wgsl!("shadow_tap_compare_nearest"),
-                ShadowTap::Filtered => wgsl!("shadow_tap_compare"),
-                ShadowTap::Gathered => wgsl!("shadow_tap_gather"),
+                ShadowTap::Manual => wgsl!("shadow_maps/tap_manual"),
+                ShadowTap::Nearest => wgsl!("shadow_maps/tap_compare_nearest"),
+                ShadowTap::Filtered => wgsl!("shadow_maps/tap_compare"),
+                ShadowTap::Gathered => wgsl!("shadow_maps/tap_gather"),
             });
             text.push_str(match filter {
-                ShadowFilter::One => wgsl!("shadow_filter_one"),
-                ShadowFilter::Sixteen => wgsl!("shadow_filter_16"),
-                ShadowFilter::Four => wgsl!("shadow_filter_4"),
-                ShadowFilter::Penumbra => wgsl!("shadow_filter_pcss"),
+                ShadowFilter::One => wgsl!("shadow_maps/filter_one"),
+                ShadowFilter::Sixteen => wgsl!("shadow_maps/filter_16"),
+                ShadowFilter::Four => wgsl!("shadow_maps/filter_4"),
+                ShadowFilter::Penumbra => wgsl!("shadow_maps/filter_pcss"),
             });
             text.push_str(match views {
-                ShadowViews::One => wgsl!("shadow_views_one"),
-                ShadowViews::First => wgsl!("shadow_views_first"),
-                ShadowViews::Blended => wgsl!("shadow_views_blended"),
+                ShadowViews::One => wgsl!("shadow_maps/views_one"),
+                ShadowViews::First => wgsl!("shadow_maps/views_first"),
+                ShadowViews::Blended => wgsl!("shadow_maps/views_blended"),
             });
             let is_disc = *filter == ShadowFilter::Penumbra;
-            text.push_str(if is_disc { wgsl!("sun_mapped_disc") } else { wgsl!("sun_mapped") });
+            text.push_str(if is_disc { wgsl!("shadow_maps/sun_disc") } else { wgsl!("shadow_maps/sun") });
         }
     }
 }
@@ -191,11 +194,11 @@ fn push_receiver(text: &mut String, bias: &ShadowBias, margin_texels: f32) {
     for (name, value) in numbers {
         let _ = writeln!(text, "const {name}: f32 = {value:?};");
     }
-    text.push_str(&[wgsl!("shadow_view"), wgsl!("shadow_maps"), wgsl!("shadow_receiver")].concat());
+    text.push_str(&[wgsl!("shadow_maps/view"), wgsl!("shadow_maps/maps"), wgsl!("shadow_maps/receiver")].concat());
 }
 
-/// Tells whether a sampler filters what it compares: entry points `probe_vertex`, which draws a depth of 1, and `probe`, which
-/// writes what is read between that texel and one of depth 0.
+/// Tells whether a comparison sampler filters: entry points `probe_vertex`, which draws a depth of 1, and `probe`,
+/// which writes what is read halfway between that texel and one of depth 0.
 pub fn shadow_probe_shader() -> String {
-    wgsl!("shadow_probe").to_owned()
+    wgsl!("shadow_maps/probe").to_owned()
 }

@@ -1,27 +1,27 @@
-//! Structs that both Rust and WGSL know; tests compare every offset with what naga lays out.
+//! Structs that Rust and WGSL share. Tests compare every offset with the layout in WGSL.
 
 use bytemuck::{Pod, Zeroable};
 
 /// [`MaterialUniform::wrap_u`]: tile.
 pub const WRAP_REPEAT: u32 = 0;
-/// Tile, every second one mirrored.
+/// Tile, and mirror every second tile.
 pub const WRAP_MIRROR: u32 = 1;
-/// The border's texel goes on for ever.
+/// The texel at the border is repeated.
 pub const WRAP_CLAMP: u32 = 2;
 
-/// What every stage knows about the frame. `Frame` in `frame.wgsl`.
+/// Uniforms of a frame. `Frame` in `frame/frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct FrameUniform {
     /// Columns of the matrix from eye space (bake's axes, the camera at the origin) to clip space.
     pub clip_from_eye: [[f32; 4]; 4],
-    /// The camera in bake space.
+    /// The camera in bake space, metres.
     pub eye_m: [f32; 3],
-    /// Angle between neighbouring pixels at the picture's centre.
+    /// Angle between neighbouring pixels at the picture's centre, radians.
     pub pixel_angle_rad: f32,
-    /// Ray through the upper left corner of the picture, one deep.
+    /// Ray through the upper left corner of the picture; its component along the camera's axis is 1.
     pub ray_first: [f32; 3],
-    /// Path time.
+    /// Path time, from 0 to 1.
     pub t: f32,
     /// What a step of one pixel to the right adds to the ray.
     pub ray_per_column: [f32; 3],
@@ -35,59 +35,59 @@ pub struct FrameUniform {
     pub sun_direction: [f32; 3],
     /// One over the sun's angular diameter; very large for a point.
     pub discs_per_radian: f32,
-    /// The sun on a surface that faces it.
+    /// Irradiance of the sun on a surface that faces it, linear RGB; 1 is white on a white surface.
     pub sun_light: [f32; 3],
     #[doc(hidden)]
     pub pad_0: f32,
-    /// The sky on a surface that looks up.
+    /// The same of the sky on a surface that faces up.
     pub sky_light: [f32; 3],
     #[doc(hidden)]
     pub pad_1: f32,
-    /// The ground on a surface that looks down.
+    /// The same of the ground on a surface that faces down.
     pub ground_light: [f32; 3],
     #[doc(hidden)]
     pub pad_2: f32,
-    /// The sky's colour overhead.
+    /// Radiance of the sky overhead, linear RGB.
     pub zenith: [f32; 3],
     #[doc(hidden)]
     pub pad_3: f32,
-    /// The sky's colour at the horizon.
+    /// Radiance of the sky at the horizon.
     pub horizon: [f32; 3],
     #[doc(hidden)]
     pub pad_4: f32,
-    /// What the sky has more of around the sun.
+    /// Radiance that is added around the sun.
     pub glow: [f32; 3],
     #[doc(hidden)]
     pub pad_5: f32,
-    /// What is seen below the horizon where there is no ground.
+    /// Radiance below the horizon.
     pub haze: [f32; 3],
     #[doc(hidden)]
     pub pad_6: f32,
 }
 
-/// A lamp in the scene. `Lamp` in `lamp.wgsl`.
+/// A lamp in the scene. `Lamp` in `lamp/lamp.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct LampUniform {
-    /// Where it is, bake space.
+    /// Its centre in bake space, metres.
     pub position_m: [f32; 3],
-    /// The middle of its window, path time.
+    /// The middle of its window, as path time from 0 to 1.
     pub t: f32,
-    /// Its light on a surface that faces it from a metre away.
+    /// Irradiance on a surface that faces it from one metre away, linear RGB.
     pub light: [f32; 3],
-    /// Length of its window, path time.
+    /// Length of its window, as path time.
     pub width_t: f32,
-    /// Its radius.
+    /// Its radius, metres.
     pub radius_m: f32,
     /// One over its diameter; very large for a point.
     pub balls_per_metre: f32,
-    /// How far its light goes; very large where it goes on for ever.
+    /// Its range, metres; very large where it has none.
     pub range_m: f32,
     #[doc(hidden)]
     pub pad: f32,
 }
 
-/// The sky at a moment, in spherical harmonics. `Sky` in `ambient_sky.wgsl`.
+/// The sky at a moment, in spherical harmonics. `Sky` in `ambient/sky.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct SkyUniform {
@@ -98,23 +98,24 @@ pub struct SkyUniform {
 /// Most shadow maps of a view.
 pub const MOST_SHADOW_VIEWS: usize = 6;
 
-/// A shadow map's matrix. `ShadowView` in `shadow_view.wgsl`.
+/// A shadow map's matrix. `ShadowView` in `shadow_maps/view.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct ShadowViewUniform {
-    /// Columns of the matrix from a point less the origin to the map's clip space; depth is 0 nearest to the sun.
+    /// Columns of the matrix from a point, relative to the origin, to the map's clip space. Depth is 0 nearest to the
+    /// sun.
     pub clip_from_point: [[f32; 4]; 4],
-    /// The origin, bake space.
+    /// The origin in bake space, metres.
     pub origin_m: [f32; 3],
-    /// What a metre towards the sun adds to z; negative.
+    /// What one metre towards the sun adds to z; negative.
     pub z_per_metre: f32,
-    /// The eye less the origin.
+    /// The eye relative to the origin, metres.
     pub eye_from_origin_m: [f32; 3],
-    /// Height of the ground, bake space.
+    /// Height of the ground in bake space, metres.
     pub ground_height_m: f32,
 }
 
-/// A view's shadow maps. `ShadowMaps` in `shadow_maps.wgsl`.
+/// A view's shadow maps. `ShadowMaps` in `shadow_maps/maps.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct ShadowMapsUniform {
@@ -126,7 +127,7 @@ pub struct ShadowMapsUniform {
     pub pad: [u32; 3],
 }
 
-/// A material. `Material` in `frame.wgsl`.
+/// A material. `Material` in `frame/frame.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct MaterialUniform {
@@ -134,13 +135,13 @@ pub struct MaterialUniform {
     pub base_color: [f32; 4],
     /// Linear RGB.
     pub emissive: [f32; 3],
-    /// 1 where the base colour is drawn as it is.
+    /// 1 where the base colour is shown without lighting, else 0.
     pub is_unlit: f32,
-    /// Alpha below which there is a hole.
+    /// Alpha below which the mask hides the surface; 0 without a mask.
     pub cutoff: f32,
-    /// How the texture goes on to the left and right.
+    /// How the texture repeats along u.
     pub wrap_u: u32,
-    /// How the texture goes on above and below.
+    /// How the texture repeats along v.
     pub wrap_v: u32,
     #[doc(hidden)]
     pub pad: f32,

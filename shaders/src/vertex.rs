@@ -1,8 +1,7 @@
-//! What a vertex carries, said once: the buffers' layout, the WGSL structs and the vertex stage all come from
-//! [`attributes`].
+//! Vertex attributes. The layout of the buffers, the WGSL structs and the vertex stage all come from [`attributes`].
 //!
-//! Vertices come in streams, each in a buffer of its own, so that a pass reads only what it needs: the depth pass of a
-//! solid surface reads positions alone, and a surface without texture has no texture coordinates.
+//! Vertices are split into streams, each in its own buffer, so that a pass reads only what it needs: the depth pass
+//! of an opaque surface reads positions alone, and a surface without a texture has no texture coordinates.
 
 use crate::SurfaceVariant;
 use bytemuck::{Pod, Zeroable};
@@ -51,15 +50,15 @@ pub enum Format {
     Uint,
 }
 
-/// Where a corner lies.
+/// The position of a vertex.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct PositionVertex {
-    /// Bake space.
+    /// In bake space, metres.
     pub position_m: [f32; 3],
 }
 
-/// What every lit surface needs.
+/// Attributes of every lit surface.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct SurfaceVertex {
@@ -73,13 +72,13 @@ pub struct SurfaceVertex {
     pub material: u32,
 }
 
-/// What a textured surface needs as well.
+/// Attributes of textured surfaces.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TextureVertex {
     /// Image coordinates.
     pub image_uv: [f32; 2],
-    /// Texels of the image's first level a metre of the triangle, the same at its three corners.
+    /// Texels of the image's first level per metre of the triangle, the same at its three corners.
     pub texels_per_metre: f32,
 }
 
@@ -106,7 +105,7 @@ pub struct Attribute {
     pub is_flat: bool,
 }
 
-/// The attributes of a surface, for the passes that shade it and the depth pass of surfaces with holes.
+/// The attributes of a surface, for the passes that shade it and the depth pass of surfaces with alpha masks.
 pub fn attributes(surface: SurfaceVariant) -> Vec<Attribute> {
     use std::mem::offset_of;
     let make = |name, stream, format, offset: usize, is_flat| Attribute {
@@ -146,8 +145,8 @@ impl Format {
     }
 }
 
-/// The vertex stage of a surface: it places the corner and hands on everything but the position, and one number more, if asked for:
-/// its name, and what it is.
+/// The vertex stage of a surface. It projects the position and passes on all other attributes, and one more number if
+/// given: its name and its expression.
 pub(crate) fn surface_vertex_wgsl(surface: SurfaceVariant, more: Option<(&str, &str)>) -> String {
     let all = attributes(surface);
     let mut vertex = String::from("struct Vertex {\n");
@@ -173,7 +172,7 @@ pub(crate) fn surface_vertex_wgsl(surface: SurfaceVariant, more: Option<(&str, &
     )
 }
 
-/// The vertex stage of the depth pass of a surface without holes.
+/// The vertex stage of the depth pass of a surface without an alpha mask.
 pub(crate) const DEPTH_VERTEX_WGSL: &str = "@vertex
 fn depth_vertex(@location(0) position_m: vec3<f32>) -> @builtin(position) @invariant vec4<f32> {
     return clip_position(position_m);

@@ -1,4 +1,4 @@
-//! Shaders of shadow volumes, and of lights without size.
+//! Shaders of shadow volumes and of point lights.
 
 use crate::compose::{on_surface, wgsl};
 use crate::{PageVariant, SurfaceVariant};
@@ -6,38 +6,38 @@ use crate::{PageVariant, SurfaceVariant};
 /// A light that extrudes volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VolumeLight {
-    /// Walls meet in a point at infinity.
+    /// Walls meet in one point at infinity.
     Sun,
     /// Walls spread to infinity.
     Lamp,
-    /// Walls spread to somewhere beyond the lamp's range.
+    /// Walls end beyond the lamp's range.
     LampWithRange,
 }
 
 /// Where a volume's corners come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VolumeCorners {
-    /// A list: entry point `volume_vertex`.
+    /// An index list made by the CPU: entry point `volume_vertex`.
     Indexed,
-    /// Every edge: entry points `wall_vertex`, `cap_vertex`, and for lamps `dark_cap_vertex`.
+    /// The vertex shader, from every edge: entry points `wall_vertex`, `cap_vertex`, and for lamps `dark_cap_vertex`.
     Found,
 }
 
-/// What becomes of a face's pixels.
+/// What the pixels of a face are used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VolumeUse {
-    /// Nothing but what the stencil does.
+    /// The stencil counts them.
     Stencil,
-    /// A signed sum: entry point `volume_count_fragment`.
+    /// They are summed with signs: entry point `volume_count_fragment`.
     Count,
-    /// A sum: entry point `volume_fill_fragment`.
+    /// They are summed: entry point `volume_fill_fragment`.
     Fill,
-    /// Sums for each side, to be shown: entry point `volume_show_fragment`.
+    /// They are summed per side, to be shown: entry point `volume_show_fragment`.
     Show,
 }
 
 impl VolumeUse {
-    /// The entry point for pixels.
+    /// The entry point of the fragment stage.
     pub fn fragment(self) -> Option<&'static str> {
         match self {
             Self::Stencil => None,
@@ -50,43 +50,45 @@ impl VolumeUse {
 
 /// Shadow volumes.
 pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) -> String {
-    let mut text = [wgsl!("frame"), wgsl!("place"), wgsl!("volume_points")].concat();
+    let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection"), wgsl!("volumes/points")].concat();
     match light {
-        VolumeLight::Sun => text.push_str(wgsl!("volume_corner_sun")),
-        VolumeLight::Lamp => text.push_str(&[wgsl!("lamp"), wgsl!("volume_corner_lamp")].concat()),
-        VolumeLight::LampWithRange => text.push_str(&[wgsl!("lamp"), wgsl!("volume_corner_lamp_finite")].concat()),
+        VolumeLight::Sun => text.push_str(wgsl!("volumes/corner_sun")),
+        VolumeLight::Lamp => text.push_str(&[wgsl!("lamp/lamp"), wgsl!("volumes/corner_lamp")].concat()),
+        VolumeLight::LampWithRange => {
+            text.push_str(&[wgsl!("lamp/lamp"), wgsl!("volumes/corner_lamp_finite")].concat())
+        }
     }
     match (corners, light) {
-        (VolumeCorners::Indexed, _) => text.push_str(wgsl!("volume_indexed")),
+        (VolumeCorners::Indexed, _) => text.push_str(wgsl!("volumes/indexed")),
         (VolumeCorners::Found, VolumeLight::Sun) => {
-            text.push_str(&[wgsl!("volume_found"), wgsl!("volume_wall_sun")].concat());
+            text.push_str(&[wgsl!("volumes/found"), wgsl!("volumes/wall_sun")].concat());
         }
-        (VolumeCorners::Found, _) => text.push_str(&[wgsl!("volume_found"), wgsl!("volume_wall_lamp")].concat()),
+        (VolumeCorners::Found, _) => text.push_str(&[wgsl!("volumes/found"), wgsl!("volumes/wall_lamp")].concat()),
     }
     text.push_str(match of {
         VolumeUse::Stencil => "",
-        VolumeUse::Count => wgsl!("volume_count_fragment"),
-        VolumeUse::Fill => wgsl!("volume_fill_fragment"),
-        VolumeUse::Show => wgsl!("volume_show_fragment"),
+        VolumeUse::Count => wgsl!("volumes/count_fragment"),
+        VolumeUse::Fill => wgsl!("volumes/fill_fragment"),
+        VolumeUse::Show => wgsl!("volumes/show_fragment"),
     });
     text
 }
 
-/// A sun or lamp without size on surfaces that nothing hides from it.
+/// A point light on surfaces that no volume hides from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum HardLight {
-    /// Whether the sun shines there: entry points `surface_vertex` and `sun_gate_fragment`.
+    /// Whether the sun lights the surface: entry points `surface_vertex` and `sun_gate_fragment`.
     SunGate,
-    /// What the sun adds: `sun_light_fragment`.
+    /// Light of the sun: `sun_light_fragment`.
     Sun,
-    /// Whether the lamp shines there: `lamp_gate_fragment`.
+    /// Whether the lamp lights the surface: `lamp_gate_fragment`.
     LampGate,
-    /// What the lamp adds: `lamp_light_fragment`.
+    /// Light of the lamp: `lamp_light_fragment`.
     Lamp,
 }
 
 impl HardLight {
-    /// The entry point for pixels.
+    /// The entry point of the fragment stage.
     pub fn fragment(self) -> &'static str {
         match self {
             Self::SunGate => "sun_gate_fragment",
@@ -97,29 +99,31 @@ impl HardLight {
     }
 }
 
-/// A light without size.
+/// A point light.
 pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
     let mut text = on_surface(surface, &PageVariant::default());
     if matches!(light, HardLight::LampGate | HardLight::Lamp) {
-        text.push_str(&[wgsl!("lamp"), wgsl!("way_to_lamp"), wgsl!("lamp_gate")].concat());
+        text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("volumes/lamp_gate")].concat());
     }
     match light {
-        HardLight::SunGate => text.push_str(wgsl!("sun_gate_fragment")),
-        HardLight::Sun => text.push_str(&[wgsl!("surface"), wgsl!("sun_light_fragment")].concat()),
-        HardLight::LampGate => text.push_str(wgsl!("lamp_gate_fragment")),
+        HardLight::SunGate => text.push_str(wgsl!("volumes/sun_gate_fragment")),
+        HardLight::Sun => text.push_str(&[wgsl!("surface/surface"), wgsl!("volumes/sun_light_fragment")].concat()),
+        HardLight::LampGate => text.push_str(wgsl!("volumes/lamp_gate_fragment")),
         HardLight::Lamp => {
-            text.push_str(&[wgsl!("lamp_shade"), wgsl!("surface"), wgsl!("lamp_light_fragment")].concat());
+            text.push_str(
+                &[wgsl!("lamp/shade"), wgsl!("surface/surface"), wgsl!("volumes/lamp_light_fragment")].concat(),
+            );
         }
     }
     text
 }
 
-/// The whole picture, where there is no surface: entry points `screen_vertex` and `background_fragment`.
+/// Visibility of all pixels without a surface: entry points `screen_vertex` and `background_fragment`.
 pub fn background_shader() -> String {
-    [wgsl!("screen"), wgsl!("background_fragment")].concat()
+    [wgsl!("frame/screen_vertex"), wgsl!("frame/background_fragment")].concat()
 }
 
-/// The whole picture, for what the stencil does alone: entry point `screen_vertex`.
+/// All pixels, for the stencil alone: entry point `screen_vertex`.
 pub fn screen_shader() -> String {
-    wgsl!("screen").to_owned()
+    wgsl!("frame/screen_vertex").to_owned()
 }

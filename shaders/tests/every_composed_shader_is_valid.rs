@@ -18,7 +18,7 @@ fn surfaces() -> Vec<SurfaceVariant> {
         .map(|bits| SurfaceVariant {
             is_textured: bits & 1 != 0,
             has_vertex_color: bits & 2 != 0,
-            is_cut: bits & 4 != 0,
+            has_alpha_mask: bits & 4 != 0,
         })
         .collect()
 }

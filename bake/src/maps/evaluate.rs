@@ -1,4 +1,4 @@
-//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in `shaders/src/wgsl`,
+//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in `shaders/src/wgsl/baked`,
 //! with the same names in the same order.
 //!
 //! The sun's disc, while it crosses a shadow's edge, is taken as a line along its path (the chapter's linear light):

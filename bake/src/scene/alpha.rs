@@ -1,7 +1,7 @@
 //! Alpha masks: alpha is sampled at the nearest texel of the image's first mip level.
 //!
 //! It is not filtered, so that all tracers, shaders and closed-form engines agree about where a leaf ends: on the
-//! borders of the image's texels. The alpha shader in `shaders/src/wgsl` has the same formula.
+//! borders of the image's texels. The same formula is in `shaders/src/wgsl/surface/alpha_mask.wgsl`.
 
 use super::{Alpha, Image, Material, Mesh, Scene, TextureRef, Wrap};
 use glam::{Vec2, Vec3};

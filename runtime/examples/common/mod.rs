@@ -1,9 +1,9 @@
-//! What the examples share: sheets become files.
+//! What the examples share: writing pictures to files.
 
 use std::path::Path;
 use sunbake_runtime::Raster;
 
-/// What may go wrong.
+/// Any error.
 pub type Anything = Box<dyn std::error::Error>;
 
 /// Writes a picture of sRGB codes as a PNG, as small as it gets.

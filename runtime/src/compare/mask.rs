@@ -152,8 +152,8 @@ impl Reasons<'_> {
         let pixel_m = hit.distance_m * f64::from(self.shot.view.pixel_angle_rad);
         let (way, length_m) = match (self.light, &self.moment.lamp) {
             (LightKind::Lamp, Some(lamp)) => {
-                let way_m = lamp.position_m.as_dvec3() - point_m;
-                (way_m.normalize(), way_m.length())
+                let to_lamp_m = lamp.position_m.as_dvec3() - point_m;
+                (to_lamp_m.normalize(), to_lamp_m.length())
             }
             _ => (self.moment.sun_direction.as_dvec3(), 4.0 * stage.scene.half_extent_m.length()),
         };

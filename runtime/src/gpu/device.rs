@@ -117,9 +117,10 @@ impl Gpu {
 
     /// Uses the caller's device and queue.
     ///
-    /// No feature is required; request [`Gpu::WANTED_FEATURES`] as far as the adapter has them. `wgpu::Limits::default()`
-    /// serves pages of up to 8192 texels and 256 layers. Larger sets need larger `max_texture_dimension_2d`,
-    /// `max_texture_array_layers` and `max_buffer_size`: what does not fit is [`GpuError::Limit`].
+    /// No feature is required; request [`Gpu::WANTED_FEATURES`] as far as the adapter has them.
+    /// `wgpu::Limits::default()` serves pages of up to 8192 texels and 256 layers. Larger sets need larger
+    /// `max_texture_dimension_2d`, `max_texture_array_layers` and `max_buffer_size`: what does not fit is
+    /// [`GpuError::Limit`].
     ///
     /// Device and queue are handles: clone them, and keep on using yours.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {

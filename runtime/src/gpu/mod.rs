@@ -9,17 +9,17 @@
 //! | `volumes` | a renderer of stencil shadow volumes |
 //! | `shadow_maps` | a renderer of shadow maps |
 //!
-//! Built once per stage: vertex streams, the textures of each atlas page, base colour textures. Built when first needed: one
-//! pipeline per variant of surface, page and output. Per frame: uniforms are written; a depth pass; one or more
-//! passes that light. Depth is reversed and infinite, `Depth32Float`: 1 at the near plane, 0 at infinity. Later passes draw
-//! where depths are equal, so that each pixel is lit once.
+//! Built once per stage: vertex streams, the textures of each atlas page, base colour textures. Built when first
+//! needed: one pipeline per variant of surface, page and output. Per frame: uniforms are written; a depth pass; one
+//! or more passes that light. Depth is reversed and infinite, `Depth32Float`: 1 at the near plane, 0 at infinity.
+//! Later passes draw where depths are equal, so that each pixel is lit once.
 //!
-//! What a scene does not call for is not built. That is decided before anything is built (`plan`, and each renderer's own
-//! `plan.rs`), by the same keys that pipelines are built by. [`Census`](crate::plan::Census) counts what was built, and tests
-//! compare the two.
+//! What a scene does not call for is not built. That is decided before anything is built (`plan`, and each renderer's
+//! own `plan.rs`), by the same keys that pipelines are built by. [`Census`](crate::plan::Census) counts what was
+//! built, and tests compare the two.
 //!
-//! Each renderer draws with `draw_into` into a texture view of the caller's, with the caller's encoder. `lit`, `visibility` and
-//! `lamp_visibility` draw into a texture of the renderer's own and read it back.
+//! Each renderer draws with `draw_into` into a texture view of the caller's, with the caller's encoder. `lit`,
+//! `visibility` and `lamp_visibility` draw into a texture of the renderer's own and read it back.
 
 mod baked;
 mod device;

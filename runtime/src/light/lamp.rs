@@ -73,13 +73,13 @@ impl LampMoment {
         }
     }
 
-    /// Its light that a matt surface reflects, at visibility `seen`. Twin of `lamp_shade.wgsl`.
-    pub fn on(&self, base_color: Vec3, normal: Vec3, way_m: Vec3, seen: f32) -> Vec3 {
-        let distance2 = way_m.length_squared().max(1e-12);
+    /// Its light that a matt surface reflects, at visibility `seen`. Twin of `lamp/shade.wgsl`.
+    pub fn on(&self, base_color: Vec3, normal: Vec3, to_lamp_m: Vec3, seen: f32) -> Vec3 {
+        let distance2 = to_lamp_m.length_squared().max(1e-12);
         if distance2 > self.range_m * self.range_m {
             return Vec3::ZERO;
         }
-        let lambert = (normal.dot(way_m) / distance2.sqrt()).max(0.0);
+        let lambert = (normal.dot(to_lamp_m) / distance2.sqrt()).max(0.0);
         base_color * self.light * (seen * lambert / (distance2 + self.radius_m * self.radius_m))
     }
 }

@@ -1,4 +1,4 @@
-//! The sky's colour in a direction: twin of `sky_color.wgsl`, same names, same order.
+//! The sky's colour in a direction: twin of `frame/sky_color.wgsl`, same names, same order.
 
 use super::Moment;
 use glam::Vec3;

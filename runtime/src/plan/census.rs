@@ -45,7 +45,7 @@ pub struct Census {
     pub shadow_pipelines: usize,
     /// Shadow maps; each cascade and each face of a cube counts as one.
     pub shadow_maps: usize,
-    /// Masks of what casts on the ground, those of the blur included.
+    /// Masks of casters on the ground, those of the blur included.
     pub shadow_masks: usize,
     /// Bytes of shadow maps and masks.
     pub shadow_bytes: u64,

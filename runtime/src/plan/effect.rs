@@ -5,7 +5,7 @@
 pub enum Effect {
     /// A pass that draws depths first, so that each pixel is lit once.
     DepthPass,
-    /// A pass that lights surfaces, or tells how much light they see.
+    /// A pass that lights surfaces, or shows how much light they see.
     LightPass,
     /// A sky behind the scene.
     SkyBackground,
@@ -59,7 +59,7 @@ pub enum Effect {
     SunShadows,
     /// More than one shadow map.
     SeveralMaps,
-    /// A blurred mask of what casts on the ground.
+    /// A blurred mask of casters on the ground.
     BlurredMask,
     /// A mask of casters projected flat onto the ground.
     FlatMask,

@@ -1,12 +1,13 @@
-//! The effect plan of a picture: which effects a stage, a technique and a kind of picture call for, why, what each takes, and how
-//! to turn it on or off.
+//! The effect plan of a picture: which effects a stage, a technique and a kind of picture call for, why, what each
+//! takes, and how to turn it on or off.
 //!
-//! A plan is decided before anything is built on the GPU, by the code that builds: batches, page layouts and pipeline keys
-//! come from the same functions. A plan counts them, [`Census`] counts what was built, and a test compares the two. Some counts
-//! depend on the view and the light: how casters are counted, how many maps there are. There a plan states an upper
-//! bound before the picture, and the true counts after it.
+//! A plan is decided before anything is built on the GPU, by the code that builds: batches, page layouts and pipeline
+//! keys come from the same functions. A plan counts them, [`Census`] counts what was built, and a test compares the
+//! two. Some counts depend on the view and the light: how casters are counted, how many maps there are. There a plan
+//! states an upper bound before the picture, and the true counts after it.
 //!
-//! What an effect takes is what leaving it out would save. Two effects that need the same pipeline each save nothing alone.
+//! What an effect takes is what leaving it out would save. Two effects that need the same pipeline each save nothing
+//! alone.
 //!
 //! Decisions are values ([`Effect`], [`Reason`], [`Census`]); `wording.rs` holds every text.
 

@@ -36,8 +36,8 @@ impl<'a> BakedCpu<'a> {
         let triangle = hit.triangle as usize;
         let front = self.stage.geometry.normal(triangle).as_vec3();
         let face = towards_eye(front, front, shot.ray(pixel));
-        let way_m = lamp.position_m - self.stage.geometry.point(triangle, hit.barycentric).as_vec3();
-        self.pages[page as usize].lamp_visibility(page_uv, face, way_m, self.filter, lamp)
+        let to_lamp_m = lamp.position_m - self.stage.geometry.point(triangle, hit.barycentric).as_vec3();
+        self.pages[page as usize].lamp_visibility(page_uv, face, to_lamp_m, self.filter, lamp)
     }
 
     fn sun_visibility_at(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {

@@ -1,8 +1,8 @@
-//! Baked maps, evaluated on the GPU.
+//! Baked maps, evaluated on the GPU. The method of *GPU Gems* chapter 13.
 //!
-//! Passes: depth, then one that evaluates the maps where it lights. Targets: a picture and its depths. Cost: the maps'
-//! bytes, and for each pixel four texels of two textures a layer. Wrong where [`super::BakedCpu`] is, and within a
-//! rounding of it elsewhere.
+//! Passes: depths, then one that evaluates the maps where it lights. Targets: a picture and its depths. Cost: the
+//! maps' bytes, and for each pixel four texels of two textures per layer. Wrong where [`super::BakedCpu`] is, and
+//! equal to it but for rounding.
 
 use super::{FrameCost, Technique};
 use crate::gpu::{BakedRenderer, Gpu, GpuError, Output};
@@ -25,7 +25,7 @@ impl<'g> BakedGpu<'g> {
         Ok(Self { renderer: BakedRenderer::new(gpu, stage, filter)? })
     }
 
-    /// The same, with passes timed where the GPU can.
+    /// The same, with passes timed if the GPU can.
     pub fn timed(self) -> Self {
         Self { renderer: self.renderer.timed() }
     }

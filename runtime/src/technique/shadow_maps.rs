@@ -1,7 +1,7 @@
-//! Shadow maps, live: depths as the sun sees them, with which each pixel's surface is compared.
+//! Live shadow maps: depths as the sun sees them, which each pixel's surface is compared with.
 //!
-//! Passes: one for each map, unless the last frame's serve; depths; and one that lights. Targets: the maps, a picture
-//! and its depths. Wrong by the size of a texel at every edge, and where what casts is thinner than one; how far, and
+//! Passes: one for each map, unless those of the last frame serve; depths; and one that lights. Targets: the maps, a
+//! picture and its depths. Wrong by about a texel at every edge, and where a caster is thinner than one. How far, and
 //! what each variant does about it, is in [`crate::shadow_maps::Variant`] and measured in
 //! `docs/measurements/shadow_maps.md`.
 
@@ -27,7 +27,7 @@ impl<'g> ShadowMaps<'g> {
         Ok(Self { renderer: MapRenderer::new(gpu, stage, settings)?, settings })
     }
 
-    /// How it is drawn.
+    /// Its settings.
     pub fn settings(&self) -> &MapSettings {
         &self.settings
     }
@@ -37,7 +37,7 @@ impl<'g> ShadowMaps<'g> {
         self.renderer.report()
     }
 
-    /// What draws.
+    /// The renderer.
     pub fn renderer(&self) -> &MapRenderer<'g> {
         &self.renderer
     }
@@ -99,7 +99,7 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Planar {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: what casts is laid flat on \
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: casters are projected flat onto \
                      it, and nothing else is in shadow"
                 ),
                 None => "no surface is level: there is no ground, and nothing is in shadow".to_owned(),
@@ -126,8 +126,8 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Ground {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: it reads a blurred picture of \
-                     what casts, all else compares depths"
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: it reads a blurred mask of \
+                     casters, all else compares depths"
                 ),
                 None => "no surface is level: there is no ground, and all compare depths".to_owned(),
             });

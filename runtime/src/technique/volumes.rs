@@ -1,10 +1,9 @@
-//! Shadow volumes, live: what the sun's centre or the lamp's does not see is found anew for each moment.
+//! Live shadow volumes: for each moment, the surfaces that the centre of the sun or the lamp does not see.
 //!
-//! Passes: depth, what comes from all around, and for each light its volumes and what it adds. Targets: a picture, and
-//! its depths with a stencil. Kept: the casters' points, and the volumes of the last light. Exact for each pixel's
-//! centre, with hard edges; wrong where leaves are cut out of cards, whose whole cards cast, and where a shadow is
-//! shallower than a 64th of a pixel: that much rasterising cannot tell, and a surface must not be shaded by what lies
-//! on it.
+//! Passes: depths, ambient light, and for each light its volumes and then its light. Targets: a picture, and its
+//! depths with a stencil. Kept: the casters' points, and the volumes of the last lights. Exact at each pixel's
+//! centre, with hard edges. Wrong under alpha masks, whose whole triangles cast, and for shadows shallower than a
+//! 64th of a pixel: rasterisation cannot resolve them, and a surface must not be shaded by what lies on it.
 
 use super::{FrameCost, Technique};
 use crate::gpu::{FrameReport, Gpu, GpuError, Output, VolumeRenderer, VolumeSettings};
@@ -33,12 +32,12 @@ impl<'g> Volumes<'g> {
         self.renderer.report()
     }
 
-    /// What there is to cast.
+    /// Counts of the casters.
     pub fn caster_counts(&self) -> CasterCounts {
         self.renderer.caster_counts()
     }
 
-    /// What draws.
+    /// The renderer.
     pub fn renderer(&mut self) -> &mut VolumeRenderer<'g> {
         &mut self.renderer
     }
@@ -92,7 +91,7 @@ impl Technique for Volumes<'_> {
         let casters = self.renderer.caster_counts();
         let mut lines = vec![
             format!(
-                "casters: {} triangles in {} casters; {} solid bodies ({} of them turned over), {} open ones; {} open edges, {} \
+                "casters: {} triangles in {} casters; {} solid bodies ({} of them inside out), {} open ones; {} open edges, {} \
                  edges of three triangles or more",
                 casters.triangles,
                 casters.casters,
@@ -110,14 +109,14 @@ impl Technique for Volumes<'_> {
         ];
         if casters.cut_triangles > 0 {
             lines.push(format!(
-                "{} triangles have holes cut by alpha: volumes do not see holes, and their whole cards cast",
+                "{} triangles have alpha masks: volumes do not see them, and the whole triangles cast",
                 casters.cut_triangles
             ));
         }
         for light in &self.renderer.report().lights {
             let plan = &light.plan;
             lines.push(format!(
-                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted before the \
+                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted in front of the \
                  surface, {} behind it ({} without caps); {} triangles in {}",
                 light.light,
                 plan.casters,

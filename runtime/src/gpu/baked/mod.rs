@@ -52,8 +52,9 @@ impl<'g> BakedRenderer<'g> {
         self.times
     }
 
-    /// Draws a picture into the caller's texture view: records two passes into the caller's encoder, and submits nothing. Depths
-    /// are kept in a texture of the renderer's own. Pipelines are built for the format when it is first drawn into.
+    /// Draws a picture into the caller's texture view: records two passes into the caller's encoder, and submits
+    /// nothing. Depths are kept in a texture of the renderer's own. Pipelines are built for the format when it is
+    /// first drawn into.
     ///
     /// Several pictures may be recorded into one encoder.
     pub fn draw_into(

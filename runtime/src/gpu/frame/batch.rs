@@ -1,7 +1,7 @@
 //! Vertices in batches: triangles that share a program, a page and a texture lie side by side, and are drawn at once.
 //!
-//! Vertices are those of [`sunbake::scene::Geometry`], with all transforms applied, so that what is rasterised is bit for bit what
-//! is traced.
+//! Vertices are those of [`sunbake::scene::Geometry`], with all transforms applied, so that what is rasterised is bit
+//! for bit what is traced.
 
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
@@ -73,8 +73,8 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
     }
 }
 
-/// Sorts triangles into batches and lays out the streams. With a ground, the ground gets batches of its own, and so does what
-/// casts and is not drawn.
+/// Sorts triangles into batches and lays out the streams. With a ground, the ground gets batches of its own, and so
+/// does what casts and is not drawn.
 pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
     let mut vertices = Vertices::default();
     let batches = by_key(stage, ground).into_iter().map(|(key, triangles)| {
@@ -118,7 +118,7 @@ fn key(stage: &Stage, instance: usize) -> BatchKey {
         surface: SurfaceVariant {
             is_textured: texture.is_some(),
             has_vertex_color: stage.mesh(instance).colors.is_some(),
-            is_cut: matches!(material.alpha, Alpha::Mask { .. }),
+            has_alpha_mask: matches!(material.alpha, Alpha::Mask { .. }),
         },
         is_two_sided: false,
         is_ground: false,

@@ -63,8 +63,8 @@ impl FrameBindings {
         Self { layout, group, lamp, sky, slots, frame }
     }
 
-    /// Writes the uniforms of a frame, in the encoder's order: passes recorded earlier still see the ones before. A lamp that is not
-    /// shown gives no light.
+    /// Writes the uniforms of a frame, in the encoder's order: passes recorded earlier still see the ones before. A
+    /// lamp that is not shown gives no light.
     pub fn write(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, view: &View, moment: &Moment) {
         write_in_order(gpu, encoder, &self.frame, bytemuck::bytes_of(&moment.uniform(view)));
         if let Some(buffer) = &self.lamp {
@@ -78,8 +78,8 @@ impl FrameBindings {
     }
 }
 
-/// Fills a buffer by a copy in the encoder. `Queue::write_buffer` would run before all commands of the encoder, so that a
-/// frame of several lights, or two pictures in one encoder, would see only what was written last.
+/// Fills a buffer by a copy in the encoder. `Queue::write_buffer` would run before all commands of the encoder, so
+/// that a frame of several lights, or two pictures in one encoder, would see only what was written last.
 pub fn write_in_order(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, contents: &[u8]) {
     let usage = wgpu::BufferUsages::COPY_SRC;
     let staged = gpu.device.create_buffer_init(&BufferInitDescriptor { label: Some("staged"), contents, usage });

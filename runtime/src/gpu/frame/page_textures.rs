@@ -1,5 +1,5 @@
-//! The maps of an atlas page as textures: one array of rise and one of fall times, with a slice for each layer of each lane; the
-//! same for the lamp; and ambient light.
+//! The maps of an atlas page as textures: one array of rise and one of fall times, with a slice for each layer of
+//! each lane; the same for the lamp; and ambient light.
 
 use crate::gpu::device::{Gpu, GpuError};
 use std::borrow::Cow;

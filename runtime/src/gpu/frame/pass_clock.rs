@@ -15,7 +15,7 @@ pub enum Phase {
     Depth,
     /// Shadow volumes.
     Volumes,
-    /// Shadow maps, and masks of what casts.
+    /// Shadow maps, and masks of casters.
     Maps,
     /// Light.
     Light,

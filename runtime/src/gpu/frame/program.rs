@@ -116,20 +116,20 @@ impl Program {
         texture: Option<&wgpu::BindGroupLayout>,
         format: wgpu::TextureFormat,
     ) -> Self {
-        let is_cut = key.surface.is_cut;
-        let attributes = match is_cut {
+        let has_alpha_mask = key.surface.has_alpha_mask;
+        let attributes = match has_alpha_mask {
             true => sunbake_shaders::attributes(key.surface),
             false => sunbake_shaders::attributes(SurfaceVariant::default())[..1].to_vec(),
         };
         let source = ShaderStages {
             text: &sunbake_shaders::depth_shader(key.surface),
-            vertex: if is_cut { "surface_vertex" } else { "depth_vertex" },
-            fragment: is_cut.then_some("depth_fragment"),
+            vertex: if has_alpha_mask { "surface_vertex" } else { "depth_vertex" },
+            fragment: has_alpha_mask.then_some("depth_fragment"),
             attributes: &attributes,
         };
         let depth_stencil = depth_state(format, true, wgpu::CompareFunction::Greater);
         let state = PipelineState::new(None, depth_stencil, key.is_two_sided);
-        Self::new(gpu, &source, &[Some(frame), None, texture.filter(|_| is_cut)], state)
+        Self::new(gpu, &source, &[Some(frame), None, texture.filter(|_| has_alpha_mask)], state)
     }
 }
 

@@ -58,7 +58,7 @@ pub fn with_pipelines<'a, K: ProgramKey + 'a>(census: Census, keys: impl Iterato
         Census {
             pipelines: census.pipelines + 1,
             alpha_test_pipelines: census.alpha_test_pipelines
-                + usize::from(surface.is_some_and(|batch| batch.surface.is_cut)),
+                + usize::from(surface.is_some_and(|batch| batch.surface.has_alpha_mask)),
             two_sided_pipelines: census.two_sided_pipelines
                 + usize::from(surface.is_some_and(|batch| batch.is_two_sided)),
             ..census

@@ -19,7 +19,7 @@ pub struct SceneOnGpu {
     pub needs: SceneNeeds,
     /// What is drawn.
     pub batches: Vec<Batch>,
-    /// What casts and is not drawn; only with a ground.
+    /// Casters that are not drawn; only with a ground.
     pub hidden: Vec<Batch>,
     /// Vertex buffers.
     pub streams: BTreeMap<Stream, wgpu::Buffer>,
@@ -37,7 +37,7 @@ impl SceneOnGpu {
         Self::with_ground(gpu, stage, None)
     }
 
-    /// Uploads a stage, its ground as batches of their own, and what casts and is not drawn.
+    /// Uploads a stage, its ground as batches of their own, and casters that are not drawn.
     pub fn with_ground(gpu: &Gpu, stage: &Stage, ground: Option<&Ground>) -> Result<Self, GpuError> {
         let (batches, vertices) = batches(stage, ground);
         let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key));
@@ -99,7 +99,7 @@ impl SceneOnGpu {
 
     /// Draws depths.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
-        self.draw_with(pass, batch, program, batch.key.surface.is_cut);
+        self.draw_with(pass, batch, program, batch.key.surface.has_alpha_mask);
     }
 
     /// Draws surfaces.
@@ -132,6 +132,6 @@ impl SceneOnGpu {
 
 /// The key of a batch's depth program. Only alpha masks tell surfaces apart there.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
-    let surface = if key.surface.is_cut { key.surface } else { Default::default() };
+    let surface = if key.surface.has_alpha_mask { key.surface } else { Default::default() };
     BatchKey { surface, page: 0, texture: None, is_ground: false, is_hidden: false, ..*key }
 }

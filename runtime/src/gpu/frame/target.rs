@@ -9,11 +9,11 @@ pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Format of depths with a stencil, in which shadow volumes are counted.
 pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32FloatStencil8;
 
-/// A texture view that a picture is drawn into. Its texture has the size of the [`View`](crate::View), one sample per pixel, and
-/// the usage `RENDER_ATTACHMENT`.
+/// A texture view that a picture is drawn into. Its texture has the size of the [`View`](crate::View), one sample per
+/// pixel, and the usage `RENDER_ATTACHMENT`.
 ///
-/// Lit pictures are in linear light: an sRGB format encodes them and clips what is beyond 1; a float format keeps it for
-/// a tone curve of the caller's.
+/// Lit pictures are in linear light: an sRGB format encodes them and clips what is beyond 1; a float format keeps it
+/// for a tone curve of the caller's.
 #[derive(Debug, Clone, Copy)]
 pub struct PictureTarget<'a> {
     /// What is drawn into. All of it is overwritten.

@@ -60,9 +60,9 @@ impl SceneEffects<'_> {
     }
 
     fn alpha_test(&self) -> Need {
-        let count = self.scene.surfaces().filter(|key| key.surface.is_cut).count();
+        let count = self.scene.surfaces().filter(|key| key.surface.has_alpha_mask).count();
         self.of_surfaces(Effect::AlphaTest, count, |key| BatchKey {
-            surface: SurfaceVariant { is_cut: false, ..key.surface },
+            surface: SurfaceVariant { has_alpha_mask: false, ..key.surface },
             ..*key
         })
     }

@@ -1,5 +1,5 @@
-//! What a stage's surfaces, their maps and their textures call for. [`SceneOnGpu`](crate::gpu::frame::SceneOnGpu) builds what is
-//! stated here, and plans count it.
+//! What a stage's surfaces, their maps and their textures call for. [`SceneOnGpu`](crate::gpu::frame::SceneOnGpu)
+//! builds what is stated here, and plans count it.
 
 use crate::gpu::frame::{BatchKey, TextureKey, by_key};
 use crate::plan::Census;
@@ -15,7 +15,7 @@ use sunbake_shaders::{AmbientModel, PageVariant, Stream};
 pub struct SceneNeeds {
     /// What is drawn.
     pub batches: BTreeSet<BatchKey>,
-    /// What casts and is not drawn; only with a ground.
+    /// Casters that are not drawn; only with a ground.
     pub hidden: BTreeSet<BatchKey>,
     /// Atlas pages.
     pub pages: Vec<PageNeeds>,
@@ -35,7 +35,8 @@ pub struct PageNeeds {
 }
 
 impl SceneNeeds {
-    /// What a stage calls for. With a ground, the ground is batches of its own, and what casts and is not drawn is included.
+    /// What a stage calls for. With a ground, the ground is batches of its own, and casters that are not drawn are
+    /// included.
     pub fn new(stage: &Stage, ground: Option<&Ground>) -> Self {
         Self::of(stage, by_key(stage, ground).into_keys())
     }

@@ -1,11 +1,12 @@
 //! Draws a stage that shadow maps light.
 //!
-//! For each direction of the sun, and for maps that follow the view in each frame: a pass for each map. Per frame: depths, then
-//! one pass that lights and reads the maps. `map:ground` adds a mask of what casts on the ground, as the sun sees it, blurred in
-//! two passes. `map:planar` has no map: it projects casters flat onto the ground, as the camera sees it.
+//! For each direction of the sun, and for maps that follow the view in each frame: a pass for each map. Per frame:
+//! depths, then one pass that lights and reads the maps. `map:ground` adds a mask of casters on the ground, as the
+//! sun sees it, blurred in two passes. `map:planar` has no map: it projects casters flat onto the ground, as the
+//! camera sees it.
 //!
-//! Nothing is built that is not called for: no map where nothing can be in shadow, no mask without a ground, no pipeline for
-//! alpha masks without alpha masks.
+//! Nothing is built that is not called for: no map where nothing can be in shadow, no mask without a ground, no
+//! pipeline for alpha masks without alpha masks.
 
 mod bindings;
 mod decisions;
@@ -13,12 +14,12 @@ mod passes;
 mod plan;
 mod probe;
 mod programs;
+mod record;
 mod textures;
 
 use super::device::{Gpu, GpuError};
 use super::frame::{
-    Batch, Canvas, DEPTH_FORMAT, FrameTimes, Output, PassClock, PictureTarget, ProgramTable, SceneOnGpu, Targets,
-    readback, with_pipelines,
+    DEPTH_FORMAT, FrameTimes, Output, PassClock, ProgramTable, SceneOnGpu, Targets, readback, with_pipelines,
 };
 use super::plan::SceneNeeds;
 use crate::View;
@@ -29,9 +30,8 @@ use crate::stage::Stage;
 use bindings::{MapBindings, MapReads};
 use glam::Vec3;
 use plan::{MapNeeds, SunShading};
-use programs::{MapProgram, SunReads};
+use programs::MapProgram;
 use serde::Serialize;
-use std::time::Instant;
 use sunbake_shaders::ShadowTap;
 use textures::{CasterMask, DepthMaps};
 
@@ -138,8 +138,8 @@ impl<'g> MapRenderer<'g> {
         self.draw(view, moment, Output::LampVisibility)
     }
 
-    /// Depths of the surfaces of the last picture of visibility along the camera's axis, in metres; infinite where there is
-    /// none.
+    /// Depths of the surfaces of the last picture of visibility along the camera's axis, in metres; infinite where
+    /// there is none.
     pub fn depths_m(&self, view: &View) -> Result<Vec<f32>, GpuError> {
         let Some(depth) = self.targets.last_depth(Output::Visibility) else { return Ok(Vec::new()) };
         let stored = self.gpu.checked("reading depths", || readback::read_depths(self.gpu, depth))??;
@@ -204,120 +204,6 @@ impl<'g> MapRenderer<'g> {
         if maps.is_empty() { SunNow::Open } else { SunNow::Shaded(maps) }
     }
 
-    /// Draws a picture into the caller's texture view: records its passes into the caller's encoder, and submits nothing. Depths and
-    /// maps are kept in textures of the renderer's own. Pipelines are built for the format when it is first drawn into.
-    ///
-    /// Several pictures may be recorded into one encoder. Submit it: the next picture takes maps that were recorded as drawn.
-    pub fn draw_into(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: PictureTarget<'_>,
-        output: Output,
-        view: &View,
-        moment: &Moment,
-    ) -> Result<(), GpuError> {
-        // Maps of a frame that failed may not have been drawn.
-        self.record(encoder, target, output, view, moment).inspect_err(|_| self.forget())
-    }
-
-    fn record(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: PictureTarget<'_>,
-        output: Output,
-        view: &View,
-        moment: &Moment,
-    ) -> Result<(), GpuError> {
-        let gpu = self.gpu;
-        (self.report, self.last) = (MapReport::default(), None);
-        let started = Instant::now();
-        let now = self.sun_now(view, moment, output);
-        self.report.fit_seconds = started.elapsed().as_secs_f64();
-        self.report.without = match &now {
-            SunNow::Down => Some("the sun is down, or not asked for"),
-            SunNow::Open => Some("nothing in view can be in shadow"),
-            SunNow::Shaded(_) => None,
-        };
-        let needs = self.needs_of(view.size, output, &now);
-        let depth = self.targets.depth(gpu, output, view.size)?;
-        gpu.checked("building pipelines", || self.prepare(view.size, &needs, target.format))??;
-        self.scene.frame.write(gpu, encoder, view, moment);
-        self.clock.start();
-        if let SunNow::Shaded(maps) = &now {
-            let height_m = self.shadow_scene.ground.casts_from_m as f32;
-            self.bindings.write(gpu, encoder, maps, view.eye_m, height_m);
-            self.shadow_passes(encoder, maps);
-        }
-        let canvas = Canvas { output, picture: target, depth, clock: &self.clock };
-        let program = |key: &MapProgram| self.programs.get(key, target.format);
-        canvas.depth_pass(encoder, &self.scene, |key| program(&MapProgram::Depth(*key)));
-        let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
-            let key = needs.surface_program_key(&self.scene.needs, &batch.key);
-            if let MapProgram::Surface(_, SunReads::Maps | SunReads::Mask | SunReads::Flat, _) = key {
-                pass.set_bind_group(3, self.read_group.as_ref().map(|(group, _)| group), &[]);
-            }
-            match output {
-                Output::Visibility => self.scene.draw_without_page(pass, batch, program(&key)),
-                Output::Lit | Output::LampVisibility => self.scene.draw_surface(pass, batch, program(&key)),
-            }
-        };
-        let sky = (output == Output::Lit).then(|| program(&MapProgram::Sky));
-        canvas.surface_pass(encoder, &self.scene, draw, sky);
-        self.report.passes = self.clock.passes();
-        self.last = Some(needs.drawn(self.report.drawn));
-        Ok(())
-    }
-
-    /// Draws into a picture of its own, and reads it back.
-    fn draw(&mut self, view: &View, moment: &Moment, output: Output) -> Result<Vec<f32>, GpuError> {
-        let gpu = self.gpu;
-        let picture = self.targets.picture(gpu, output, view.size)?;
-        gpu.checked("drawing", || {
-            let mut encoder = gpu.encoder();
-            self.record(&mut encoder, picture.target(), output, view, moment)?;
-            let floats = readback::read(gpu, &picture, output.channels(), encoder)?;
-            self.report.times = self.clock.read(gpu)?;
-            Ok(floats)
-        })
-        .flatten()
-        // Maps of a frame that failed may not have been drawn.
-        .inspect_err(|_| {
-            self.last = None;
-            self.forget();
-        })
-    }
-
-    /// Makes whatever a frame needs and is not there yet.
-    fn prepare(&mut self, size: [u32; 2], needs: &MapNeeds, format: wgpu::TextureFormat) -> Result<(), GpuError> {
-        if let SunShading::Shaded { maps, .. } = needs.shading {
-            self.prepare_shadows(size, maps)?;
-        }
-        let mut programs = std::mem::take(&mut self.programs);
-        programs.prepare(needs.programs(&self.scene.needs), format, |key| self.program(key, format));
-        self.programs = programs;
-        Ok(())
-    }
-
-    /// Makes the maps and masks that a frame needs and that are not there yet.
-    fn prepare_shadows(&mut self, size: [u32; 2], count: usize) -> Result<(), GpuError> {
-        let (gpu, size_texels) = (self.gpu, self.settings.size_texels);
-        if self.reads.has_depths && self.maps.as_ref().is_none_or(|maps| maps.layers.len() < count) {
-            self.maps = Some(DepthMaps::new(gpu, size_texels, count as u32)?);
-            (self.read_group, self.drawn) = (None, Vec::new());
-        }
-        if self.reads.has_mask && self.mask.is_none() {
-            self.mask = Some([(); 2].map(|()| CasterMask::new(gpu, [size_texels; 2])));
-        }
-        if self.reads.has_flat_mask && self.flat.as_ref().is_none_or(|flat| flat.size != size) {
-            (self.flat, self.read_group) = (Some(CasterMask::new(gpu, size)), None);
-        }
-        if self.read_group.is_none() {
-            let mask = self.mask.as_ref().map(|[mask, _]| mask);
-            self.read_group = Some(self.bindings.read(gpu, self.maps.as_ref(), mask, self.flat.as_ref()));
-        }
-        Ok(())
-    }
-
     /// What a frame calls for.
     fn needs_of(&self, size: [u32; 2], output: Output, now: &SunNow) -> MapNeeds {
         let shading = match now {
@@ -330,8 +216,8 @@ impl<'g> MapRenderer<'g> {
         MapNeeds { output, settings, reads, shading, ground_casts, pixels, is_exact: true }
     }
 
-    /// What pictures of a kind and of so many pixels call for: what the last picture took, if it was of this kind; else an
-    /// upper bound.
+    /// What pictures of a kind and of so many pixels call for: what the last picture took, if it was of this kind;
+    /// else an upper bound.
     pub fn plan_of(&self, stage: &Stage, output: Output, pixels: u64) -> DrawPlan {
         let most = || MapNeeds::most(stage, &self.shadow_scene, &self.settings, self.reads, output, pixels);
         self.last.filter(|last| last.output == output).unwrap_or_else(most).plan(&self.scene.needs)
@@ -364,8 +250,8 @@ fn compares(settings: &MapSettings) -> bool {
     !settings.gathers() && !matches!(settings.variant, Variant::Plain | Variant::Planar)
 }
 
-/// An upper bound of what pictures of a kind and of so many pixels call for, whatever the view and the moment, of a stage of
-/// which nothing has been built.
+/// An upper bound of what pictures of a kind and of so many pixels call for, whatever the view and the moment, of a
+/// stage of which nothing has been built.
 pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: u64) -> DrawPlan {
     let scene = ShadowScene::new(stage);
     // Whether the sampler filters changes no count.

@@ -8,13 +8,13 @@ use crate::gpu::frame::{Batch, Phase, PictureTarget, Program, begin_color_pass, 
 use crate::shadow_maps::{MapProjection, Variant};
 
 impl MapRenderer<'_> {
-    /// What casts on anything.
+    /// Casters.
     fn casters(&self) -> impl Iterator<Item = &Batch> {
         let casts = self.shadow_scene.ground.casts;
         self.scene.batches.iter().chain(&self.scene.hidden).filter(move |batch| casts || !batch.key.is_ground)
     }
 
-    /// What casts on the ground.
+    /// Casters on the ground.
     fn casters_on_ground(&self) -> impl Iterator<Item = &Batch> {
         self.scene.batches.iter().chain(&self.scene.hidden).filter(|batch| !batch.key.is_ground)
     }
@@ -62,7 +62,7 @@ impl MapRenderer<'_> {
         }
     }
 
-    /// A mask of what casts on the ground: as the sun sees it, or projected flat onto the ground as the camera sees it.
+    /// A mask of casters on the ground: as the sun sees it, or projected flat onto the ground as the camera sees it.
     fn mask_pass(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
         let mask = self.mask.as_ref().map(|[mask, _]| mask).or(self.flat.as_ref());
         let Some(mask) = mask.filter(|mask| mask.size == size) else { return };

@@ -80,13 +80,13 @@ impl MapNeeds {
         }
     }
 
-    /// What casts on anything.
+    /// Casters.
     fn casters<'a>(&self, scene: &'a SceneNeeds) -> impl Iterator<Item = BatchKey> + 'a {
         let casts = self.ground_casts;
         scene.surfaces().filter(move |key| casts || !key.is_ground).map(caster_key)
     }
 
-    /// What casts on the ground.
+    /// Casters on the ground.
     fn casters_on_ground<'a>(&self, scene: &'a SceneNeeds) -> impl Iterator<Item = BatchKey> + 'a {
         scene.surfaces().filter(|key| !key.is_ground).map(caster_key)
     }

@@ -3,7 +3,8 @@
 use crate::gpu::device::{Gpu, GpuError};
 use crate::gpu::frame::{DEPTH_FORMAT, PipelineState, Program, ShaderStages, depth_state, readback};
 
-/// What a filtering comparison sampler reads halfway between a lit texel and a shaded one; 0 or 1 if it does not filter.
+/// What a filtering comparison sampler reads halfway between a lit texel and a shaded one; 0 or 1 if it does not
+/// filter.
 pub fn halfway(gpu: &Gpu) -> Result<f32, GpuError> {
     gpu.checked("probing the comparison sampler", || {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {

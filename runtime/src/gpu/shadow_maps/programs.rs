@@ -17,7 +17,7 @@ pub enum MapProgram {
     Depth(BatchKey),
     /// A shadow map.
     Map(BatchKey),
-    /// A mask of what casts on the ground.
+    /// A mask of casters on the ground.
     Mask(BatchKey),
     /// The blur of a mask.
     Blur {
@@ -115,12 +115,12 @@ impl MapRenderer<'_> {
     }
 
     fn map_program(&self, key: &BatchKey) -> Program {
-        let is_cut = key.surface.is_cut;
+        let has_alpha_mask = key.surface.has_alpha_mask;
         let attributes = caster_attributes(key);
         let source = ShaderStages {
             text: &sunbake_shaders::shadow_depth_shader(key.surface),
-            vertex: if is_cut { "surface_vertex" } else { "depth_vertex" },
-            fragment: is_cut.then_some("depth_fragment"),
+            vertex: if has_alpha_mask { "surface_vertex" } else { "depth_vertex" },
+            fragment: has_alpha_mask.then_some("depth_fragment"),
             attributes: &attributes,
         };
         let depth = depth_state(DEPTH_FORMAT, true, wgpu::CompareFunction::Less);
@@ -129,12 +129,12 @@ impl MapRenderer<'_> {
     }
 
     fn mask_program(&self, key: &BatchKey) -> Program {
-        let is_cut = key.surface.is_cut;
+        let has_alpha_mask = key.surface.has_alpha_mask;
         let attributes = caster_attributes(key);
         let is_flat = self.settings.variant == Variant::Planar;
         let source = ShaderStages {
             text: &sunbake_shaders::shadow_mask_shader(key.surface, is_flat),
-            vertex: if is_cut { "surface_vertex" } else { "mask_vertex" },
+            vertex: if has_alpha_mask { "surface_vertex" } else { "mask_vertex" },
             fragment: Some("mask_fragment"),
             attributes: &attributes,
         };
@@ -144,7 +144,7 @@ impl MapRenderer<'_> {
 
     fn caster_groups(&self, key: &BatchKey) -> [Option<&wgpu::BindGroupLayout>; 3] {
         let [frame, _, texture] = self.scene.groups(key);
-        [frame, Some(&self.bindings.view_layout), texture.filter(|_| key.surface.is_cut)]
+        [frame, Some(&self.bindings.view_layout), texture.filter(|_| key.surface.has_alpha_mask)]
     }
 
     /// What a surface's shader reads of the sun.
@@ -201,7 +201,7 @@ impl MapRenderer<'_> {
 }
 
 fn caster_attributes(key: &BatchKey) -> Vec<sunbake_shaders::Attribute> {
-    match key.surface.is_cut {
+    match key.surface.has_alpha_mask {
         true => sunbake_shaders::attributes(key.surface),
         false => sunbake_shaders::attributes(SurfaceVariant::default())[..1].to_vec(),
     }

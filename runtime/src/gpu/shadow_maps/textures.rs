@@ -1,4 +1,4 @@
-//! Textures of shadow maps: depths as the sun sees them, and masks of what casts on the ground.
+//! Textures of shadow maps: depths as the sun sees them, and masks of casters on the ground.
 
 use crate::gpu::device::{Gpu, GpuError};
 use crate::gpu::frame::{DEPTH_FORMAT, texture};
@@ -10,7 +10,7 @@ pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 const DRAWN_AND_READ: wgpu::TextureUsages =
     wgpu::TextureUsages::RENDER_ATTACHMENT.union(wgpu::TextureUsages::TEXTURE_BINDING);
 
-/// A mask of what casts on the ground: 0 where something does, 1 elsewhere.
+/// A mask of casters on the ground: 0 where something does, 1 elsewhere.
 pub struct CasterMask {
     /// In texels.
     pub size: [u32; 2],
@@ -20,7 +20,7 @@ pub struct CasterMask {
 impl CasterMask {
     /// A mask of a size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let view = texture(gpu, "what casts", size, 1, MASK_FORMAT, DRAWN_AND_READ).create_view(&Default::default());
+        let view = texture(gpu, "casters", size, 1, MASK_FORMAT, DRAWN_AND_READ).create_view(&Default::default());
         Self { size, view }
     }
 

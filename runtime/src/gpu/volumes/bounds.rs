@@ -8,8 +8,8 @@ use crate::volumes::{Casters, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Part};
 use std::collections::BTreeSet;
 use sunbake_shaders::{VolumeCorners, VolumeLight, VolumeUse};
 
-/// Corners of a triangle's prism: under the sun three walls of a triangle each and a cap; under a lamp three walls of two triangles, a
-/// cap and a far end.
+/// Corners of a triangle's prism: under the sun three walls of a triangle each and a cap; under a lamp three walls of
+/// two triangles, a cap and a far end.
 const MOST_CORNERS: [u64; 2] = [3 * 4, 3 * 8];
 
 /// What bounds the needs of a light.
@@ -62,7 +62,8 @@ impl LightBounds<'_> {
         }
     }
 
-    /// Volumes are counted in front of the surface where a caster's caps are hidden, behind it where the eye may be in shadow.
+    /// Volumes are counted in front of the surface where a caster's caps are hidden, behind it where the eye may be
+    /// in shadow.
     fn faces(&self, is_lamp: bool) -> BTreeSet<FaceKey> {
         let wants_z_pass = match self.settings.mode {
             Mode::ZPass => true,

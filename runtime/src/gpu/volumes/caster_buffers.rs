@@ -89,8 +89,8 @@ fn found(gpu: &Gpu, casters: &Casters) -> Result<FoundBuffers, GpuError> {
     for caster in &casters.all {
         let first = records.len() as u32;
         for edge in caster.edges.clone() {
-            // Triangles that run along the edge are paired with those that run against it. Then no pair of a closed mesh needs more
-            // than one wall.
+            // Triangles that run along the edge are paired with those that run against it. Then no pair of a closed
+            // mesh needs more than one wall.
             let [along, against]: [Vec<_>; 2] = [1, -1]
                 .map(|sign| casters.uses_of(edge).iter().filter(|u| u.sign() == sign).map(|u| u.code()).collect());
             let paired = along.len().min(against.len());

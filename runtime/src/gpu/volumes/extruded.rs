@@ -168,8 +168,9 @@ impl Extruded {
     }
 }
 
-/// For each point, the end of its caster's volume as a multiple of the point's distance from the lamp, so that the flat end of each
-/// prism lies beyond the lamp's range. None where the lamp all but touches a caster: its volume would end too far away for `f32`.
+/// For each point, the end of its caster's volume as a multiple of the point's distance from the lamp, so that the
+/// flat end of each prism lies beyond the lamp's range. None where the lamp all but touches a caster: its volume
+/// would end too far away for `f32`.
 fn reaches(casters: &Casters, lamp_m: glam::DVec3, range_m: f64) -> Option<Vec<f32>> {
     let mut reaches = vec![1.0f32; casters.points_m.len().max(1)];
     for caster in &casters.all {

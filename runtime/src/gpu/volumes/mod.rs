@@ -1,19 +1,20 @@
 //! Draws a stage under point lights, whose shadows are volumes counted in a stencil.
 //!
-//! Based on: Crow, "Shadow algorithms for computer graphics", 1977; Everitt and Kilgard, "Practical and robust stenciled shadow
-//! volumes", 2002.
+//! Based on: Crow, "Shadow algorithms for computer graphics", 1977; Everitt and Kilgard, "Practical and robust
+//! stenciled shadow volumes", 2002.
 //!
-//! Passes: depths; ambient light; and for each light its volumes, then the light itself where no volume holds the surface. Nothing
-//! is drawn for a light that casts no shadow in view, and a picture of visibility has no ambient light.
+//! Passes: depths; ambient light; and for each light its volumes, then the light itself where no volume holds the
+//! surface. Nothing is drawn for a light that casts no shadow in view, and a picture of visibility has no ambient
+//! light.
 //!
-//! Counts wrap around, and both sides of every face are counted in one pass. Behind the surface (z-fail), back faces that fail
-//! the depth test add one and front faces take one away. In front of it (z-pass), front faces that pass add one and back faces
-//! take one away. Both leave in the stencil how many prisms hold the surface, so that both can share it. Where more than
-//! 255 prisms may hold a surface, they are counted in runs of at most 127, and the eighth bit is set where an earlier run
-//! counted any.
+//! Counts wrap around, and both sides of every face are counted in one pass. Behind the surface (z-fail), back faces
+//! that fail the depth test add one and front faces take one away. In front of it (z-pass), front faces that pass add
+//! one and back faces take one away. Both leave in the stencil how many prisms hold the surface, so that both can
+//! share it. Where more than 255 prisms may hold a surface, they are counted in runs of at most 127, and the eighth
+//! bit is set where an earlier run counted any.
 //!
-//! Every face is moved away from the eye (`programs.rs`), by its slope and by steps of its depth, so that it never lies in front of
-//! a surface that it touches.
+//! Every face is moved away from the eye (`programs.rs`), by its slope and by steps of its depth, so that it never
+//! lies in front of a surface that it touches.
 
 mod bounds;
 mod caster_buffers;

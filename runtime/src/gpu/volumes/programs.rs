@@ -9,8 +9,8 @@ use crate::gpu::frame::{
 use crate::volumes::Part;
 use sunbake_shaders::{Filter, HardLight, PageVariant, VolumeCorners, VolumeLight, VolumeUse};
 
-/// How far faces are moved away from the eye: in steps of depth and, in pixels, along their slope. Rasterisation moves corners by up
-/// to half of a 256th of a pixel, which on slanted faces is a change of depth.
+/// How far faces are moved away from the eye: in steps of depth and, in pixels, along their slope. Rasterisation
+/// moves corners by up to half of a 256th of a pixel, which on slanted faces is a change of depth.
 const BIAS: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -16, slope_scale: -1.0 / 128.0, clamp: 0.0 };
 /// Bits of the stencil, where one run counts all.
 const ALL_BITS: u32 = 0xff;
@@ -191,8 +191,8 @@ impl VolumeRenderer<'_> {
         });
         let layout = self.buffers.layout(self.gpu, key.light);
         let groups = [Some(&self.scene.frame.layout), Some(&layout)];
-        // Faces end at infinity, where depth is 0. Their bias takes them below 0, where GPUs that clip depths per pixel would cut
-        // them off.
+        // Faces end at infinity, where depth is 0. Their bias takes them below 0, where GPUs that clip depths per
+        // pixel would cut them off.
         let state =
             PipelineState { clamps_depth: self.gpu.clamps_depth(), ..PipelineState::new(target, depth_stencil, true) };
         Program::new(self.gpu, &source, &groups, state)

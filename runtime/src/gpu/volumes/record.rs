@@ -26,11 +26,12 @@ pub struct VolumeCanvas<'a> {
 }
 
 impl VolumeRenderer<'_> {
-    /// Draws a picture into the caller's texture view: records its passes into the caller's encoder, and submits nothing. Depths,
-    /// the stencil and volumes are kept in resources of the renderer's own. Pipelines are built for the format when it is first
-    /// drawn into.
+    /// Draws a picture into the caller's texture view: records its passes into the caller's encoder, and submits
+    /// nothing. Depths, the stencil and volumes are kept in resources of the renderer's own. Pipelines are built for
+    /// the format when it is first drawn into.
     ///
-    /// Several pictures may be recorded into one encoder. Lights are added up in the target's format: 8 bits round each sum.
+    /// Several pictures may be recorded into one encoder. Lights are added up in the target's format: 8 bits round
+    /// each sum.
     pub fn draw_into(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,

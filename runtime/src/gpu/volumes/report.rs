@@ -147,8 +147,8 @@ impl VolumeRenderer<'_> {
     }
 }
 
-/// An upper bound of what pictures of a kind call for, whatever the view and the moment, of a stage of which nothing has been
-/// built.
+/// An upper bound of what pictures of a kind call for, whatever the view and the moment, of a stage of which nothing
+/// has been built.
 pub fn volumes_plan(stage: &Stage, settings: &super::VolumeSettings, output: Output) -> DrawPlan {
     let casters = Casters::new(stage);
     let buffers = caster_buffers::size_of(&casters, settings.mode);

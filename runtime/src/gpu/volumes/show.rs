@@ -21,9 +21,9 @@ const SHOWN_PICTURE: f32 = 0.8;
 const SHOWN_FACES: f32 = 1.1;
 
 impl VolumeRenderer<'_> {
-    /// The lit picture with the sun's volumes shown, or the lamp's where it alone shines. Warm: more faces turn to the eye than
-    /// away, so that the surface lies in a volume. Cold: one looks through volumes and out of them. Each further face
-    /// counts less.
+    /// The lit picture with the sun's volumes shown, or the lamp's where it alone shines. Warm: more faces turn to
+    /// the eye than away, so that the surface lies in a volume. Cold: one looks through volumes and out of them. Each
+    /// further face counts less.
     pub fn shown(&mut self, view: &View, moment: &Moment) -> Result<Vec<Vec3>, GpuError> {
         let lit = self.lit(view, moment)?;
         let faces = readback::colors(&self.over_faces(view, moment, Output::Lit, VolumeUse::Show)?);
@@ -53,15 +53,16 @@ impl VolumeRenderer<'_> {
         self.over_faces(view, moment, output, VolumeUse::Fill)
     }
 
-    /// Depths of the surfaces of the last picture of visibility along the camera's axis, in metres; infinite where there is
-    /// none.
+    /// Depths of the surfaces of the last picture of visibility along the camera's axis, in metres; infinite where
+    /// there is none.
     pub fn depths_m(&self, view: &View, of_lamp: bool) -> Result<Vec<f32>, GpuError> {
         let Some(depth) = self.targets.last_depth(visibility_of(of_lamp)) else { return Ok(Vec::new()) };
         let stored = self.gpu.checked("reading depths", || readback::read_depths(self.gpu, depth))??;
         Ok(stored.iter().map(|depth| view.near_m() / depth).collect())
     }
 
-    /// Sums over the faces of the volumes of the light that an output shows, in place of the picture that has been drawn.
+    /// Sums over the faces of the volumes of the light that an output shows, in place of the picture that has been
+    /// drawn.
     fn over_faces(
         &mut self,
         view: &View,

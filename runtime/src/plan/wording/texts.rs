@@ -286,7 +286,7 @@ pub const TEXTS: [EffectText; 37] = [
         name: "sun-shadows",
         why_on: "something in view may be in shadow",
         why_off: "nothing can be in shadow",
-        would_take: "a map and a pass, a pipeline for what casts, and bindings",
+        would_take: "a map and a pass, a pipeline for casters, and bindings",
         off_by: "--light sky, or a scene in which nothing casts",
         on_by: "an hour with a sun, and something that casts",
         ..NONE
@@ -302,7 +302,7 @@ pub const TEXTS: [EffectText; 37] = [
     EffectText {
         effect: Effect::BlurredMask,
         name: "blurred-mask",
-        why_on: "map:ground blurs what casts on the ground",
+        why_on: "map:ground blurs a mask of casters on the ground",
         why_off: "no surface reads one",
         would_take: "two masks of a map's size, three passes, three pipelines, and two bindings",
         off_by: OTHER_MAP,

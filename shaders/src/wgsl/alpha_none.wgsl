@@ -1,2 +1,0 @@
-// A surface without holes.
-fn cut_away(varyings: Varyings) {}

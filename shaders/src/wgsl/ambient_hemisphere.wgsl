@@ -1,4 +1,0 @@
-// Sky from above and the ground's glow from below, by the normal alone: all of both is seen.
-fn ambient_light(page_uv: vec2<f32>, normal: vec3<f32>, side: i32) -> vec3<f32> {
-    return mix(frame.ground_light, frame.sky_light, 0.5 + 0.5 * normal.y);
-}

@@ -1,0 +1,8 @@
+// The lamp's visibility alone.
+@fragment
+fn lamp_visibility_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
+    test_alpha(varyings);
+    let ray = view_ray(varyings.clip.xy);
+    let face = towards_eye(varyings.front_normal, varyings, ray);
+    return vec4<f32>(lamp_visibility(varyings.page_uv, face, to_lamp_from(varyings, ray)), 0.0, 0.0, 1.0);
+}

@@ -1,8 +1,0 @@
-// The lamp's visibility alone.
-@fragment
-fn lamp_visibility_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
-    cut_away(varyings);
-    let ray = view_ray(varyings.clip.xy);
-    let face = towards_eye(varyings.front_normal, varyings, ray);
-    return vec4<f32>(lamp_visibility(varyings.page_uv, face, way_to_lamp(varyings, ray)), 0.0, 0.0, 1.0);
-}

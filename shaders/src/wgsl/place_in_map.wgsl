@@ -1,6 +1,0 @@
-// Where a vertex lands on a shadow map.
-@group(1) @binding(0) var<uniform> shadow_view: ShadowView;
-
-fn clip_position(position_m: vec3<f32>) -> vec4<f32> {
-    return shadow_view.clip_from_point * vec4<f32>(position_m - shadow_view.origin_m, 1.0);
-}

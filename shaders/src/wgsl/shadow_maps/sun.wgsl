@@ -1,0 +1,7 @@
+// A point sun from shadow maps: 0 where the surface faces away.
+fn sun_visibility(varyings: Varyings, face: vec3<f32>) -> f32 {
+    if dot(face, frame.sun_direction) <= 0.0 {
+        return 0.0;
+    }
+    return shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, face, varyings.clip.xy);
+}

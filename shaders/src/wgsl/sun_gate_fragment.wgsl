@@ -1,7 +1,0 @@
-// A sun without size, where nothing hides it: all of it, or none where the surface turns away.
-@fragment
-fn sun_gate_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
-    cut_away(varyings);
-    let face = towards_eye(varyings.front_normal, varyings, view_ray(varyings.clip.xy));
-    return vec4<f32>(select(0.0, 1.0, dot(face, frame.sun_direction) > 0.0), 0.0, 0.0, 1.0);
-}

@@ -1,7 +1,0 @@
-// A sun without size as shadow maps tell it: none where the surface turns away.
-fn sun_visibility(varyings: Varyings, face: vec3<f32>) -> f32 {
-    if dot(face, frame.sun_direction) <= 0.0 {
-        return 0.0;
-    }
-    return shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, face, varyings.clip.xy);
-}

@@ -1,4 +1,0 @@
-// A set without a sun: nothing is read.
-fn sun_visibility(varyings: Varyings, face: vec3<f32>) -> f32 {
-    return 0.0;
-}

@@ -1,0 +1,2 @@
+// A surface without an alpha mask.
+fn test_alpha(varyings: Varyings) {}

@@ -1,7 +1,0 @@
-// The sun's visibility alone.
-@fragment
-fn visibility_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
-    cut_away(varyings);
-    let face = towards_eye(varyings.front_normal, varyings, view_ray(varyings.clip.xy));
-    return vec4<f32>(sun_visibility(varyings, face), 0.0, 0.0, 1.0);
-}

@@ -1,8 +1,0 @@
-// A corner of a volume: one of the points or, beyond them, one of them extruded away from the lamp to infinity.
-fn corner(index: u32) -> vec4<f32> {
-    let count = point_count();
-    if index < count {
-        return clip_position(point_m(index));
-    }
-    return frame.clip_from_eye * vec4<f32>(point_m(index - count) - lamp.position_m, 0.0);
-}
