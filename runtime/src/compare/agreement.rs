@@ -9,6 +9,7 @@ use crate::light::{codes_from_display, display_from_light};
 use crate::shot::Shot;
 use glam::Vec3;
 use serde::Serialize;
+use sunbake::statistics;
 
 /// Step in visibility between neighbours that counts as a shadow's edge.
 pub(super) const EDGE_STEP: f32 = 4.0 / 255.0;
@@ -52,8 +53,7 @@ impl Agreement {
 
 /// Mean over all pixels.
 pub fn mean(difference: &Raster<f32>) -> f64 {
-    let sum: f64 = difference.pixels.iter().map(|&d| f64::from(d)).sum();
-    sum / difference.pixels.len().max(1) as f64
+    statistics::mean(difference.pixels.iter().map(|&d| f64::from(d)))
 }
 
 /// Differences of visibility, pixel by pixel.

@@ -6,6 +6,7 @@ use crate::gpu::{FrameTimes, GpuError};
 use crate::image::Raster;
 use crate::technique::Technique;
 use std::time::Instant;
+use sunbake::statistics::mean;
 
 /// Draws a frame, and says how long that took.
 pub(super) fn timed_frame(
@@ -28,19 +29,22 @@ fn passes_of(times: FrameTimes) -> Passes {
     Passes { depth_ms, volumes_ms, maps_ms, light_ms, all_ms }
 }
 
-/// Means, field by field.
+/// Means, field by field. Passes have means where every frame's passes are timed.
 pub(super) fn mean_times(all: &[Times]) -> Times {
-    let mean = |of: fn(&Times) -> f64| all.iter().map(of).sum::<f64>() / all.len().max(1) as f64;
-    let pass = |of: fn(&Passes) -> f64| {
-        all.iter().filter_map(|times| times.passes.as_ref()).map(of).sum::<f64>() / all.len().max(1) as f64
-    };
-    let are_timed = !all.is_empty() && all.iter().all(|times| times.passes.is_some());
-    let passes = are_timed.then(|| Passes {
-        depth_ms: pass(|p| p.depth_ms),
-        volumes_ms: pass(|p| p.volumes_ms),
-        maps_ms: pass(|p| p.maps_ms),
-        light_ms: pass(|p| p.light_ms),
-        all_ms: pass(|p| p.all_ms),
+    let of_frames = |value: fn(&Times) -> f64| mean(all.iter().map(value));
+    let timed: Vec<Passes> = all.iter().filter_map(|times| times.passes).collect();
+    let of_passes = |value: fn(&Passes) -> f64| mean(timed.iter().map(value));
+    let passes = (!all.is_empty() && timed.len() == all.len()).then(|| Passes {
+        depth_ms: of_passes(|p| p.depth_ms),
+        volumes_ms: of_passes(|p| p.volumes_ms),
+        maps_ms: of_passes(|p| p.maps_ms),
+        light_ms: of_passes(|p| p.light_ms),
+        all_ms: of_passes(|p| p.all_ms),
     });
-    Times { frame_ms: mean(|t| t.frame_ms), passes, cpu_ms: mean(|t| t.cpu_ms), wall_ms: mean(|t| t.wall_ms) }
+    Times {
+        frame_ms: of_frames(|t| t.frame_ms),
+        passes,
+        cpu_ms: of_frames(|t| t.cpu_ms),
+        wall_ms: of_frames(|t| t.wall_ms),
+    }
 }
