@@ -96,7 +96,7 @@ fn invalid_lamps_are_refused() {
     run(&["--path=list.json"]).fails("a list", 3, &["'position' in every key"]);
     run(&["--lamp=sun.json"]).fails("a sun", 3, &["key 0", "'position'"]);
     run(&["--lamp=none.json"]).fails("no file", 2, &["none.json", "--lamp"]);
-    run(&["--path=lamp.json", "--lamp=lamp.json"]).fails("two lamps", 1, &["--path and --lamp"]);
+    run(&["--path=lamp.json", "--lamp=lamp.json"]).fails("two lamps", 1, &["both bring a lamp", "--lamp or --path"]);
     run(&["--lamp=lamp.json", "--engine=bisect:64"]).fails("bisection", 1, &["bisect:64", "rays:N"]);
     assert!(desk.left().is_empty());
 }
