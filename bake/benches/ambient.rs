@@ -2,10 +2,12 @@
 //!
 //! Our own scene and three shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
 //! repository), each laid out on a page of 1024. Error is measured on runs of neighbouring texels drawn evenly from the
-//! page, against [`TRUTH_RAYS`] rays of other seeds. The rivals take turns, so that whatever else the machine does falls on
-//! all alike: this crate's estimate, and *plain random* sampling, which asks the same hierarchy in independent directions.
+//! page, against [`TRUTH_RAYS`] rays of other seeds. The two methods take turns, so that other load on the machine
+//! affects both: this crate's estimate, and *plain random* sampling, which traces the same hierarchy in independent
+//! directions.
 //!
-//! Options after `--`: `size=1024 runs=6 scene=NAME only=error|pages|threads plot=FILE.svg`. The plot shows errors against time.
+//! Options after `--`: `size=1024 runs=6 scene=NAME only=error|pages|threads plot=FILE.svg`. The plot shows errors
+//! against time.
 
 mod common;
 mod plot;
@@ -22,7 +24,7 @@ use sunbake::trace::{PacketScratch, PacketTracer, ShadowQuery, Tracer};
 
 const SHARED: [&str; 3] =
     ["osrf_city/osrf_city.glb", "littlest_tokyo/littlest_tokyo.glb", "two_cylinder_engine/2CylinderEngine.glb"];
-/// Rays of what errors are measured against.
+/// Rays of the reference.
 const TRUTH_RAYS: u32 = 65_536;
 /// Texels of a run.
 const RUN: usize = 512;
@@ -68,7 +70,7 @@ fn main() {
 /// Microseconds a texel and root mean square error, with more and more rays: ours, and plain random sampling's.
 type Curves = [Vec<(f64, f64)>; 2];
 
-/// A page of a scene, ready to be asked about.
+/// A page of a scene.
 struct Page<'a> {
     scene: &'a Scene,
     geometry: Geometry,
@@ -100,8 +102,8 @@ impl<'a> Page<'a> {
         AmbientEngine::new(self.scene, &self.geometry, &self.tracer, settings)
     }
 
-    /// Openness of some texels, and rays traced.
-    fn open(&self, engine: &AmbientEngine, texels: &[usize]) -> (Vec<f64>, u64) {
+    /// Ambient visibility of some texels, and rays traced.
+    fn visibility(&self, engine: &AmbientEngine, texels: &[usize]) -> (Vec<f64>, u64) {
         let texel = |i: usize, points: &mut Vec<AmbientPoint>| {
             points.push(self.point(texels[i]));
         };
@@ -139,7 +141,7 @@ fn pages(page: &Page) {
     for (name, settings) in cases {
         let start = Instant::now();
         let engine = page.engine(settings);
-        let (_, rays) = page.open(&engine, &all);
+        let (_, rays) = page.visibility(&engine, &all);
         let seconds = start.elapsed().as_secs_f64();
         let a_texel = seconds / all.len() as f64 * 1e6;
         println!("{name:<28}{seconds:>9.2}{:>12.2}{a_texel:>12.2}", rays as f64 / seconds / 1e6);
@@ -153,7 +155,7 @@ fn threads(page: &Page) {
     let mut seconds = [0.0; 2];
     for _ in 0..3 {
         for (threads, sum) in [1, 2].into_iter().zip(&mut seconds) {
-            *sum += on(threads, || page.open(&engine, &all)).1;
+            *sum += on(threads, || page.visibility(&engine, &all)).1;
         }
     }
     println!("two threads: {:.2} times one", seconds[0] / seconds[1]);
@@ -165,7 +167,7 @@ fn errors(page: &Page, runs: usize) -> Curves {
     let step = (page.texels.len() / runs).max(RUN);
     let texels: Vec<usize> =
         (0..page.texels.len()).step_by(step).flat_map(|s| s..(s + RUN).min(page.texels.len())).collect();
-    let truth = page.open(&page.engine(AmbientSettings { seed: 1, ..settings(TRUTH_RAYS) }), &texels).0;
+    let truth = page.visibility(&page.engine(AmbientSettings { seed: 1, ..settings(TRUTH_RAYS) }), &texels).0;
     let scatter = PacketTracer::new(&page.tracer);
     println!(
         "{:<8}{:>12}{:>12}{:>12}{:>12}{:>14}",
@@ -175,7 +177,7 @@ fn errors(page: &Page, runs: usize) -> Curves {
     let mut curves: Curves = [Vec::new(), Vec::new()];
     for rays in (2..=12).map(|bits| 1u32 << bits) {
         let engine = page.engine(settings(rays));
-        let ((found, _), ours_s) = on(1, || page.open(&engine, &texels));
+        let ((found, _), ours_s) = on(1, || page.visibility(&engine, &texels));
         let (plain, plain_s) = on(1, || random(page, &scatter, &texels, rays));
         let [ours, theirs] = [&found, &plain].map(|found| rms(found, &truth));
         // Random error falls with the square root of time.
@@ -200,8 +202,8 @@ fn rms(found: &[f64], truth: &[f64]) -> f64 {
     (found.iter().zip(truth).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / truth.len() as f64).sqrt()
 }
 
-/// Independent directions, the plain way: no net, no order, no guesses. Backs are asked as well where there are any, since
-/// the estimate asks them too; the fronts are answered.
+/// Independent directions: no low-discrepancy sequence, no order, no guesses. Backs are traced as well where there are
+/// any, since the estimate traces them too; the results are those of the fronts.
 fn random(page: &Page, scatter: &PacketTracer, texels: &[usize], rays: u32) -> Vec<f64> {
     let mut room = PacketScratch::default();
     let mut state = 0x51_7cc1_b727;

@@ -1,9 +1,9 @@
-//! What each engine takes for a texel, side by side in one run: `cargo bench -p sunbake --bench engines`.
+//! Time per texel of each engine, measured in one run: `cargo bench -p sunbake --bench engines`.
 //!
 //! Our own scene and four shared ones, where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
-//! repository), each laid out for about a million texels. Every engine answers the same runs of neighbouring texels, drawn
-//! evenly from whole pages; engines take turns, run by run, so that whatever else the machine does falls on all alike.
-//! Times are those that threads really ran, where the system tells (Linux), or else wall-clock times.
+//! repository), each laid out for about a million texels. Every engine answers the same runs of neighbouring texels,
+//! drawn evenly from whole pages; engines take turns, run by run, so that other load on the machine affects all of
+//! them. Times are CPU times of the threads where the system provides them (Linux), or else wall-clock times.
 //!
 //! Options after `--`: `texels=1000000 runs=64 scene=NAME only=engines|exact|scaling|growth`.
 
@@ -73,7 +73,7 @@ impl Options {
     }
 }
 
-/// A scene, and the points that engines are asked about.
+/// A scene, and the points that are solved.
 struct Subject {
     name: String,
     scene: Scene,
@@ -98,7 +98,8 @@ impl Subject {
 fn engines(scenes: &[Subject]) {
     println!("One thread; microseconds a texel, and work a texel:");
     println!(
-        "| scene | triangles | rays:256 | bisect:32 to 1 s | exact | nodes | triangles | rays / exact | bisect / exact |"
+        "| scene | triangles | rays:256 | bisect:32 to 1 s | exact | nodes | triangles | rays / exact | \
+         bisect / exact |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
     let mut ratios = Vec::new();
@@ -144,7 +145,7 @@ fn exact_alone(scenes: &[Subject]) {
     }
 }
 
-/// What an engine took for a texel.
+/// Time of an engine per texel.
 #[derive(Clone, Copy, Default)]
 struct Taken {
     us: f64,

@@ -1,4 +1,5 @@
-//! Seconds of every stage of a bake of times (ambient light has a bench of its own), with texels and rays a second: `cargo bench -p sunbake --bench stages`.
+//! Seconds of every stage of a bake of times (ambient light has a bench of its own), with texels and rays a second:
+//! `cargo bench -p sunbake --bench stages`.
 //!
 //! Our own scene, and three shared ones where they are on this machine (`SUNBAKE_SHARED`, or `shared` beside the
 //! repository). Arguments after `--` set the page size, and for another engine than the exact one the number of suns:

@@ -1,5 +1,5 @@
-//! Numbers as colours: from black over violet, red and orange to pale yellow, brightness growing all the way, so that a
-//! map reads the same in grey.
+//! A colour map: from black over violet, red and orange to pale yellow. Brightness grows all the way, so that a map can
+//! also be read in grey.
 
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ const STOPS: [[f32; 3]; 6] = [
     [252.0, 250.0, 190.0],
 ];
 
-/// The colour of a share from 0 to 1.
+/// The sRGB colour of a number from 0 to 1; others are clamped.
 pub fn heat(share: f32) -> [u8; 3] {
     let place = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
     let low = (place as usize).min(STOPS.len() - 2);

@@ -1,33 +1,33 @@
-//! Minutes lost, texel by texel: what `--loss-map` writes beside a page's maps.
+//! Minutes lost, texel by texel, written beside a page's maps if asked for.
 //!
-//! The picture shows the sum of both losses by [`heat`], along a square root: most texels lose seconds or nothing and a
-//! few lose an hour, and the root leaves both to be seen. Its brightest colour stands for a round number of minutes, so
-//! that pages and bakes of one scene mostly share a scale. The numbers themselves are kept for those who count.
+//! The picture shows the sum of both losses with the colour map [`heat`] and a square root: most texels lose seconds or
+//! nothing and a few lose an hour, and the root makes both visible. Its brightest colour stands for a round number of
+//! minutes, so that pages and bakes of one scene mostly have the same scale. The numbers are written as well.
 
 use crate::heat::heat;
 use crate::maps::EncodeLoss;
 
-/// What a texel that stands for no surface holds.
+/// The value of a texel that is not covered.
 const UNCOVERED: [f32; 2] = [f32::NAN; 2];
 
-/// What storing a page lost. Texels outside charts, gutters among them, stand for nothing.
+/// What storing a page lost, in minutes. Texels outside charts, including gutters, are not covered.
 #[derive(Debug, Clone)]
 pub struct LossMap {
     /// In texels.
     pub width: u32,
     /// In texels.
     pub height: u32,
-    /// For want of layers, and of bits.
+    /// By too few layers, and by rounding.
     minutes: Vec<[f32; 2]>,
 }
 
 impl LossMap {
-    /// A page of which nothing is known yet.
+    /// A page without a covered texel.
     pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, minutes: vec![UNCOVERED; width as usize * height as usize] }
     }
 
-    /// Adds what a texel lost of a light, on a path of this many minutes.
+    /// Adds the loss of a texel for a light whose path takes this many minutes.
     pub fn add(&mut self, texel: usize, loss: &EncodeLoss, duration_min: f64) {
         // Rounded to f32, as the statistics in the manifest are, so that both hold the same numbers.
         let minutes = |t: f64| (f64::from(t as f32) * duration_min) as f32;
@@ -35,12 +35,12 @@ impl LossMap {
         self.minutes[texel] = [layers + minutes(loss.cap.total_t()), bits + minutes(loss.quantised_t)];
     }
 
-    /// Minutes lost for want of layers, in row order; 0 where there is no surface.
+    /// Minutes lost by too few layers, in row order; 0 where there is no surface.
     pub fn by_layers_min(&self) -> Vec<f32> {
         self.minutes.iter().map(|texel| texel[0].max(0.0)).collect()
     }
 
-    /// Minutes lost for want of bits, in row order; 0 where there is no surface.
+    /// Minutes lost by rounding, in row order; 0 where there is no surface.
     pub fn by_bits_min(&self) -> Vec<f32> {
         self.minutes.iter().map(|texel| texel[1].max(0.0)).collect()
     }
@@ -87,8 +87,8 @@ mod tests {
         }
     }
 
-    /// Five intervals of 80 minutes on a path of 800, 20 minutes between the last two: with one layer of four, the gap of
-    /// 20 is told as light.
+    /// Five intervals of 80 minutes on a path of 800, 20 minutes between the last two: with one layer of four, the gap
+    /// of 20 is stored as lit.
     #[test]
     fn a_texel_shows_the_minutes_that_one_layer_loses() {
         let lit = [[0.0, 80.0], [160.0, 240.0], [320.0, 400.0], [480.0, 560.0], [580.0, 660.0]];

@@ -1,28 +1,28 @@
-//! How a bake tells how far it is.
+//! Progress of a bake, reported to the caller.
 
 /// A stage of a bake, in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BakeStage {
-    /// Reading the scene. Counts nothing.
+    /// Reading the scene. No count.
     Load,
     /// Unwrapping and packing. Counts thousandths.
     Unwrap,
-    /// Building the hierarchy. Counts nothing.
+    /// Building the hierarchy. No count.
     Bvh,
-    /// Finding when the sun is seen. Counts texels.
+    /// Finding the sun's lit intervals. Counts texels.
     Visibility,
-    /// Finding when the lamp is seen. Counts texels.
+    /// Finding the lamp's lit intervals. Counts texels.
     Lamp,
-    /// Finding how much of the sky is seen. Counts texels.
+    /// Finding ambient light. Counts texels.
     Ambient,
-    /// Turning them into codes. Counts texels.
+    /// Encoding intervals. Counts texels.
     Encode,
-    /// Writing files. Counts nothing.
+    /// Writing files. No count.
     Write,
 }
 
 impl BakeStage {
-    /// What to call it while it runs.
+    /// Name of the stage while it runs.
     pub fn verb(self) -> &'static str {
         match self {
             Self::Load => "reading the scene",
@@ -37,21 +37,21 @@ impl BakeStage {
     }
 }
 
-/// Listens to a bake. Calls come from any thread.
+/// Receives the progress of a bake. Calls come from any thread.
 pub trait Progress: Sync {
-    /// What the stages to come are part of, where a bake is one of many things.
+    /// Name of the task that the next stages belong to, where a bake is one of several tasks.
     fn task(&self, _name: &str) {}
-    /// A stage starts; `total` is how much it will count, 0 if it does not count.
+    /// A stage starts; `total` is its final count, 0 if it does not count.
     fn start(&self, stage: BakeStage, total: u64);
-    /// The current stage got on by so much.
+    /// Adds to the count of the current stage.
     fn advance(&self, by: u64);
-    /// Whether the bake should stop: it then fails with [`crate::BakeError::Cancelled`], and leaves nothing behind.
+    /// Whether the bake should stop. It then fails with [`crate::BakeError::Cancelled`] and leaves nothing behind.
     fn is_cancelled(&self) -> bool {
         false
     }
 }
 
-/// Listens to nothing.
+/// Ignores progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 

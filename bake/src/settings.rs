@@ -1,4 +1,4 @@
-//! What a bake is asked for. Presets fill every field; a flag overrides one.
+//! The settings of a bake. Presets fill every field.
 
 use crate::ambient::AmbientSettings;
 use crate::atlas::Density;
@@ -8,38 +8,41 @@ use crate::sun::{DayRequest, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::{BisectEngine, Engine, ExactEngine, LampEngine, LampRays, RayEngine};
 
-/// Everything that decides what a bake makes, and what it may cost.
+/// Everything that decides the result of a bake, and its cost.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakeSettings {
     /// Which sun.
     pub sun: SunRequest,
-    /// A lamp beside the sun: the text of its path file, see [`crate::lamp::parse_lamp`]. Takes a light's time and bytes.
+    /// A lamp beside the sun: the text of its path file, see [`crate::lamp::parse_lamp`]. Takes a light's time and
+    /// bytes.
     pub lamp: Option<String>,
     /// Names of materials that are neither drawn nor baked and cast nothing: outline hulls, sky domes. Usually none.
     pub leave_out: Vec<String>,
-    /// How many texels. Time and bytes grow with their number, so with the square of the density.
+    /// Density of texels. Time and bytes grow with the number of texels, so with its square.
     pub density: Density,
     /// Edge of a square page, 64 to 16384. Larger pages pack better; some hardware stops at 8192.
     pub page_size_texels: u32,
     /// Empty texels kept around every chart, 1 to 16. A four-texel filter needs 1; each mip level below needs twice as
     /// many as the one above.
     pub padding_texels: u32,
-    /// Bits of a stored time. 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the bytes.
+    /// Bits of a stored time. 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the
+    /// bytes.
     pub bits: Bits,
     /// Most layers of four intervals, 1 to 16. A texel with more intervals keeps the list that is wrong for the
     /// shortest time. Layers that no texel needs are not written.
     pub layer_cap: usize,
-    /// Lanes across the sun's disc: 1, as the chapter has it, 3 or 5. One lane leaves edges hard that run along the sun's
-    /// path; with more they soften in as many steps. Maps, and what playback reads, grow with the number. A light without
-    /// width has one lane whatever is asked.
+    /// Lanes across the sun's disc: 1, as the chapter has it, 3 or 5. With one lane, edges along the sun's path are
+    /// hard; with more they soften in as many steps. Maps, and the reads of playback, grow with the number. A light
+    /// without width always has one lane.
     pub lane_count: usize,
-    /// Whether it is baked when texels see the sun and the lamp.
+    /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
-    /// How much of the sky texels see, if that is baked.
+    /// Ambient light, if it is baked.
     pub ambient: Option<AmbientRequest>,
     /// How lit intervals are found.
     pub engine: EngineChoice,
-    /// Whether to write, for each page, where storing lost minutes. Takes 24 bytes a texel of a page while it is baked.
+    /// Whether to write, for each page, how many minutes each texel lost by storing. Takes 24 bytes a texel of a page
+    /// while it is baked.
     pub loss_map: bool,
     /// How far off an edge may be, in seconds of the path's clock, for engines that search for edges
     /// ([`EngineChoice::searches`]); 0.001 to 3600, usually 1. Halving it costs every edge one ray more.
@@ -50,17 +53,17 @@ pub struct BakeSettings {
     pub max_memory_bytes: u64,
 }
 
-/// What ambient light to bake, and how to store it.
+/// Which ambient light to bake, and how to store it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AmbientRequest {
     /// What is estimated, with how many rays.
     pub estimate: AmbientSettings,
-    /// Points of a texel along each of its edges, 1 to 8, usually 1 or 2, on which its rays are spread. Takes no more rays:
-    /// it trades noise within a texel for what a single point would miss.
+    /// Points of a texel along each of its edges, 1 to 8, usually 1 or 2, from which its rays start. It takes no more
+    /// rays: detail that a single point would miss is traded for noise.
     pub supersample: u32,
     /// Bits of stored ambient visibility; bent normals and the sky always have 16.
     pub bits: Bits,
-    /// Whether the numbers themselves are written beside the textures, as OpenEXR of `f32`.
+    /// Whether the unrounded numbers are written as well, as OpenEXR of `f32`.
     pub exr: bool,
     /// Whether, and how, ambient visibility is also stored at vertices.
     pub vertices: Option<VertexAttribute>,
@@ -71,7 +74,7 @@ pub struct AmbientRequest {
 pub enum VertexAttribute {
     /// Multiplied into `COLOR_0`, which every viewer multiplies into the base colour.
     Color,
-    /// As `_AO`, a number of its own, for an engine that knows of it.
+    /// As `_AO`, an attribute of its own, for engines that support it.
     Ao,
 }
 
@@ -113,19 +116,19 @@ pub enum SunRequest {
 /// How lit intervals are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EngineChoice {
-    /// In closed form: every edge to a billionth of the path, and nothing missed.
+    /// In closed form: every edge to a billionth of the path; nothing is missed.
     Exact,
-    /// This many evenly spaced suns, 2 to 65536: edges are off by half a step at most, and what is thinner than a step
-    /// may be missed. Time grows with the number.
+    /// Rays to this many evenly spaced positions of the sun, 2 to 65536. Edges are off by at most half a step, and what
+    /// is thinner than a step may be missed. Time grows with the number.
     Rays(usize),
-    /// This many evenly spaced suns, 2 to 65536, and then every change between two of them halved until it is known to
-    /// [`BakeSettings::edge_seconds`]. What is shorter than a step may be missed. Time grows with the number, and with the
-    /// edges that a texel has.
+    /// Rays to this many evenly spaced positions of the sun, 2 to 65536, then bisection of every change between two of
+    /// them down to [`BakeSettings::edge_seconds`]. What is shorter than a step may be missed. Time grows with the
+    /// number, and with the number of edges.
     Bisect(usize),
 }
 
 impl EngineChoice {
-    /// Whether it searches for edges, and so heeds [`BakeSettings::edge_seconds`].
+    /// Whether it searches for edges, and so uses [`BakeSettings::edge_seconds`].
     pub fn searches(self) -> bool {
         matches!(self, Self::Bisect(_))
     }
@@ -165,7 +168,7 @@ impl std::fmt::Display for EngineChoice {
 }
 
 impl BakeSettings {
-    /// A look in seconds: one page of 512, 8 bits, 64 rays of sky.
+    /// A preview in seconds: one page of 512, 8 bits, 64 rays of sky.
     pub fn draft(sun: SunRequest) -> Self {
         Self {
             density: Density::Pages(1),
@@ -178,7 +181,7 @@ impl BakeSettings {
         }
     }
 
-    /// Good for a game level: one page of 2048, 16 bits, 128 rays of sky.
+    /// For a game level: one page of 2048, 16 bits, 128 rays of sky.
     pub fn standard(sun: SunRequest) -> Self {
         Self {
             sun,
@@ -200,7 +203,7 @@ impl BakeSettings {
         }
     }
 
-    /// To keep: one page of 4096, 16 bits, as many layers as anything needs, 512 rays of sky.
+    /// For the final result: one page of 4096, 16 bits, up to 8 layers, 512 rays of sky.
     pub fn final_quality(sun: SunRequest) -> Self {
         let ambient = Some(AmbientRequest::with_rays(512));
         Self { page_size_texels: 4096, layer_cap: 8, ambient, max_memory_bytes: 16 << 30, ..Self::standard(sun) }

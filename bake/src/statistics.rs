@@ -8,7 +8,8 @@ pub fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     values.sum::<f64>() / count as f64
 }
 
-/// The smallest value that `percent` in a hundred do not exceed (nearest rank); none for an empty list. Reorders the list.
+/// The smallest value that `percent` in a hundred do not exceed (nearest rank); none for an empty list. Reorders the
+/// list.
 pub fn percentile<T: Copy>(values: &mut [T], percent: usize, order: impl FnMut(&T, &T) -> Ordering) -> Option<T> {
     let rank = (values.len() * percent).div_ceil(100).clamp(1, values.len().max(1));
     let is_empty = values.is_empty();

@@ -1,4 +1,4 @@
-//! Scenes made by code, for tests of this crate and of those above it. Not part of the tool.
+//! Scenes made by code, for the tests of this workspace. Not part of the public interface.
 
 pub mod atlas;
 

@@ -1,14 +1,15 @@
 //! Whether a point lies inside a solid.
 //!
-//! Theory: from inside a closed mesh that faces outwards, every ray first meets the back of one of its triangles. From a
-//! visible point, some ray meets a front, a double-sided surface, or nothing.
+//! Theory: from inside a closed mesh that faces outwards, every ray first meets the back of one of its triangles. From
+//! a visible point, some ray meets a front, a double-sided surface, or nothing.
 //!
-//! Many files make every surface double-sided, closed meshes too. Without a distance, only points whose ambient visibility is
-//! near 0 are tested, and there the backs of double-sided surfaces count as well: at worst a dark corner takes the value of a dark
-//! neighbour. With a distance they do not count: a room with double-sided walls would be taken for the inside of a solid.
+//! Many files make every surface double-sided, closed meshes too. Without a distance, only points whose ambient
+//! visibility is near 0 are tested, and there the backs of double-sided surfaces count as well: at worst a dark corner
+//! takes the value of a dark neighbour. With a distance they do not count: a room with double-sided walls would be
+//! taken for the inside of a solid.
 //!
-//! Practice: a few rays over the hemisphere. The first that meets no back decides, which is the first or second for nearly every
-//! point. Where a back and a front coincide (doubled faces with both windings), the front counts.
+//! Practice: a few rays over the hemisphere. The first that meets no back decides, which is the first or second for
+//! nearly every point. Where a back and a front coincide (doubled faces with both windings), the front counts.
 
 use super::directions::{DirectionSample, NormalFrame, sample_block};
 use super::point::AmbientPoint;
@@ -43,7 +44,8 @@ impl<'a> BuriedTest<'a> {
         Self { scene, geometry, tracer, directions, counts_double_sided, has_backs }
     }
 
-    /// Whether rays from a point meet nothing but backs, on each of its sides. Adds the number of rays traced to `rays`.
+    /// Whether rays from a point meet nothing but backs, on each of its sides. Adds the number of rays traced to
+    /// `rays`.
     pub fn is_buried(
         &self,
         packet_tracer: &PacketTracer,

@@ -1,14 +1,14 @@
 //! Directions over a hemisphere, cosine-weighted, in an order that keeps what follows one another close together.
 //!
-//! Theory: a sequence in the unit square, carried onto the disc by Shirley and Chiu's map ("A low distortion map between
-//! disk and square", *Journal of Graphics Tools* 2(3), 1997) and up onto the hemisphere, has a density that falls with the
-//! cosine (Malley's method). The sequence is Sobol's first two dimensions, Owen-scrambled with one of a number of seeds
-//! (Burley, "Practical hash-based Owen scrambling", *Journal of Computer Graphics Techniques* 9(4), 2020): any aligned block
-//! of 2^m of its points has one in every elementary box of area 2^-m, so that the error of a mean falls faster than that of
-//! independent points.
+//! Theory: a sequence in the unit square, carried onto the disc by Shirley and Chiu's map ("A low distortion map
+//! between disk and square", *Journal of Graphics Tools* 2(3), 1997) and up onto the hemisphere, has a density that
+//! falls with the cosine (Malley's method). The sequence is Sobol's first two dimensions, Owen-scrambled with one of a
+//! number of seeds (Burley, "Practical hash-based Owen scrambling", *Journal of Computer Graphics Techniques* 9(4),
+//! 2020): any aligned block of 2^m of its points has one in every elementary box of area 2^-m, so that the error of a
+//! mean falls faster than that of independent points.
 //!
-//! Practice: by the same property, a block has exactly one point in each cell of the square. Sorted by cell, the rays of
-//! neighbouring texels have nearly the same direction and visit the same part of the hierarchy.
+//! Practice: by the same property, a block has exactly one point in each cell of the square. Sorted by cell, the rays
+//! of neighbouring texels have nearly the same direction and visit the same part of the hierarchy.
 
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -16,8 +16,8 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Most rays that are sorted together.
 pub(super) const BLOCK: u32 = 256;
-/// Most sequences. All texels of a packet have different ones; which other texels share one is random, so that errors look
-/// like noise.
+/// Most sequences. All texels of a packet have different ones; which other texels share one is random, so that errors
+/// look like noise.
 const MOST_SEQUENCES: u32 = 64;
 /// Most directions of all sequences together: with many rays there are fewer sequences.
 const MOST_DIRECTIONS: u32 = 1 << 20;
@@ -38,8 +38,8 @@ pub(super) struct DirectionSample {
 }
 
 impl DirectionSets {
-    /// `rays` of each sequence, in blocks of the given lengths, which add up to it. Each is a power of two up to [`BLOCK`]
-    /// and starts at a multiple of itself; its directions are in the order of [`cell`].
+    /// `rays` of each sequence, in blocks of the given lengths, which add up to it. Each is a power of two up to
+    /// [`BLOCK`] and starts at a multiple of itself; its directions are in the order of [`cell`].
     pub fn new(seed: u32, rays: u32, blocks: &[u32]) -> Self {
         let count = (MOST_DIRECTIONS / rays).clamp(LEAST_SEQUENCES, MOST_SEQUENCES);
         let sequence = |index: u32| {
@@ -76,8 +76,8 @@ pub(super) fn sample_block(seed: u32, first: u32, count: u32, directions: &mut [
     }
 }
 
-/// In which of `count` cells, a power of two, a point lies: 2^a columns by 2^b rows, in boustrophedon order, so that cells
-/// that follow one another touch.
+/// In which of `count` cells, a power of two, a point lies: 2^a columns by 2^b rows, in boustrophedon order, so that
+/// cells that follow one another touch.
 fn cell([x, y]: [f32; 2], count: u32) -> u32 {
     let bits = count.ilog2();
     let (columns, rows) = (1u32 << bits.div_ceil(2), 1u32 << (bits / 2));

@@ -1,12 +1,12 @@
 //! The estimate: rays over hemispheres, for packets of neighbouring texels.
 //!
-//! **Error.** With an error E given, a texel's rays are doubled until they are enough. The two halves of its rays are two
-//! equally good estimates, and half their difference is one sample of the error of their mean. One sample may be small by
-//! chance. So the previous one counts where it was greater, and no texel's error is taken to be less than the mean of its packet.
-//! A texel stops once 1.96 times the standard error found in this way is below E. The halves belong to one low-discrepancy
-//! sequence and together err less than two independent halves, so more than 95 of 100 texels are within E; of single difficult
-//! texels among easy neighbours, four of five. Occluders smaller than the gaps between the first [`LEAST_RAYS`] rays may be
-//! missed.
+//! **Error.** With an error E given, a texel's rays are doubled until they are enough. The two halves of its rays are
+//! two equally good estimates, and half their difference is one sample of the error of their mean. One sample may be
+//! small by chance. So the previous one counts where it was greater, and no texel's error is taken to be less than the
+//! mean of its packet. A texel stops once 1.96 times the standard error found in this way is below E. The halves belong
+//! to one low-discrepancy sequence and together err less than two independent halves, so more than 95 of 100 texels are
+//! within E; of single difficult texels among easy neighbours, four of five. Occluders smaller than the gaps between
+//! the first [`LEAST_RAYS`] rays may be missed.
 
 use super::AmbientSettings;
 use super::buried::BuriedTest;
@@ -28,8 +28,8 @@ const RUN: usize = 512;
 const LEAST_RAYS: u32 = 32;
 /// Standard errors on each side of the mean that hold 95 of 100 values of a normal distribution.
 const CONFIDENCE: f64 = 1.96;
-/// Variance that is left after doubling the rays. It makes the previous difference of halves comparable to this one. It is
-/// 2^-1.5 in the best case; a half is the cautious value.
+/// Variance that is left after doubling the rays. It makes the previous difference of halves comparable to this one. It
+/// is 2^-1.5 in the best case; a half is the cautious value.
 const VARIANCE_AFTER_DOUBLING: f64 = 0.5;
 /// Ambient visibility up to which a texel is tested for being buried.
 const DARK: f64 = 0.1;
@@ -80,8 +80,8 @@ impl<'a> AmbientEngine<'a> {
         Self { tracer, packet_tracer: PacketTracer::new(tracer), buried_test, settings, blocks, directions }
     }
 
-    /// Adds those of a texel's points that lie outside all solids, or all of them where none does: a point inside would darken
-    /// the texel.
+    /// Adds those of a texel's points that lie outside all solids, or all of them where none does: a point inside would
+    /// darken the texel.
     pub fn add_visible(&self, points: impl Iterator<Item = AmbientPoint> + Clone, to: &mut Vec<AmbientPoint>) {
         let (mut scratch, before) = (PacketScratch::default(), to.len());
         let is_seen =
@@ -98,10 +98,10 @@ impl<'a> AmbientEngine<'a> {
     }
 }
 
-/// Estimates texels 0 to `count`, on all threads of the current pool; neighbours should follow one another. `texel` adds the
-/// points of a texel, at least one, among which its rays are shared out. The directions of a texel follow from its index. Answers
-/// come in that order, run by run. `on_progress` gets the number of texels that were done and returns false to stop; then there
-/// is no answer.
+/// Estimates texels 0 to `count`, on all threads of the current pool; neighbours should follow one another. `texel`
+/// adds the points of a texel, at least one, among which its rays are shared out. The directions of a texel follow from
+/// its index. Answers come in that order, run by run. `on_progress` gets the number of texels that were done and
+/// returns false to stop; then there is no answer.
 pub fn solve_ambient(
     engine: &AmbientEngine,
     count: usize,
@@ -121,7 +121,8 @@ pub fn solve_ambient(
     (0..count.div_ceil(RUN)).into_par_iter().map(run).collect()
 }
 
-/// Lengths of the blocks in which rays are traced: full blocks or, where an error may stop them, a small one and then doublings.
+/// Lengths of the blocks in which rays are traced: full blocks or, where an error may stop them, a small one and then
+/// doublings.
 fn blocks(settings: &AmbientSettings) -> Vec<u32> {
     let most = settings.rays.min(BLOCK);
     let mut traced = if settings.error.is_some() { LEAST_RAYS.min(most) } else { most };
@@ -133,8 +134,8 @@ fn blocks(settings: &AmbientSettings) -> Vec<u32> {
     blocks
 }
 
-/// Selects the directions of a texel. All texels of a packet differ. Packets start at a hashed number (finaliser of MurmurHash3:
-/// Appleby, 2011), so that texels with equal directions form no pattern.
+/// Selects the directions of a texel. All texels of a packet differ. Packets start at a hashed number (finaliser of
+/// MurmurHash3: Appleby, 2011), so that texels with equal directions form no pattern.
 fn seed_of(index: usize) -> u32 {
     let (block, texel) = ((index / TOGETHER) as u32, (index % TOGETHER) as u32);
     let mut mixed = (block ^ block >> 16).wrapping_mul(0x85eb_ca6b);

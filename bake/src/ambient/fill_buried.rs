@@ -1,9 +1,9 @@
 //! Values of buried texels.
 //!
-//! A texel inside a solid is never seen, but a filter at the solid's border reads it. Were it black, there would be a dark line
-//! around every stone that stands in the ground. So a buried texel beside a visible one takes the value of its darkest visible
-//! neighbour. Not of the nearest, nor the mean: where a wall is thinner than a texel, light from in front of it must not leak into
-//! the room behind. Texels deeper inside stay 0.
+//! A texel inside a solid is never seen, but a filter at the solid's border reads it. Were it black, there would be a
+//! dark line around every stone that stands in the ground. So a buried texel beside a visible one takes the value of
+//! its darkest visible neighbour. Not of the nearest, nor the mean: where a wall is thinner than a texel, light from in
+//! front of it must not leak into the room behind. Texels deeper inside stay 0.
 
 use crate::atlas::PageSize;
 
@@ -30,8 +30,8 @@ impl BuriedTexels {
         self.texels[texel] = if is_buried { TexelKind::Buried } else { TexelKind::Visible };
     }
 
-    /// Buried texels beside a visible one, each with the texel whose value it takes, given the ambient visibility of all texels.
-    /// Charts lie at least two texels apart, so covered neighbours belong to the same chart.
+    /// Buried texels beside a visible one, each with the texel whose value it takes, given the ambient visibility of
+    /// all texels. Charts lie at least two texels apart, so covered neighbours belong to the same chart.
     pub fn sources(&self, visibility: &[f32]) -> Vec<(usize, usize)> {
         let buried = (0..self.texels.len()).filter(|&texel| self.texels[texel] == TexelKind::Buried);
         buried.filter_map(|texel| Some((texel, self.darkest_neighbour(texel, visibility)?))).collect()

@@ -1,13 +1,14 @@
 //! Seams: where a surface was cut into charts, filtered values on both sides of the seam should agree.
 //!
-//! Theory. The texels of the two charts lie on different grids. So filtered values differ across the seam, by the texels' noise and
-//! because the gutter only repeats values. Texels near seams are therefore changed as little as makes the filtered values agree:
-//! of all x, the one with the least `sum over points of (A x - B x)^2 + sum of weight (x - x0)^2`, where A
-//! and B filter the two sides. Based on: Iwanicki, "Lighting technology of The Last of Us", *SIGGRAPH Talks* 2013.
+//! Theory. The texels of the two charts lie on different grids. So filtered values differ across the seam, by the
+//! texels' noise and because the gutter only repeats values. Texels near seams are therefore changed as little as makes
+//! the filtered values agree: of all x, the one with the least
+//! `sum over points of (A x - B x)^2 + sum of weight (x - x0)^2`, where A and B filter the two sides. Based on:
+//! Iwanicki, "Lighting technology of The Last of Us", *SIGGRAPH Talks* 2013.
 //!
-//! Practice. An edge is a seam where the two sides are one surface: same ends, same shading normals there. Points lie half a texel
-//! apart. Gutter texels may change freely, covered texels much less. Solved by conjugate gradients on
-//! the normal equations (Shewchuk, "An introduction to the conjugate gradient method without the agonizing pain", 1994).
+//! Practice. An edge is a seam where the two sides are one surface: same ends, same shading normals there. Points lie
+//! half a texel apart. Gutter texels may change freely, covered texels much less. Solved by conjugate gradients on the
+//! normal equations (Shewchuk, "An introduction to the conjugate gradient method without the agonizing pain", 1994).
 
 use crate::atlas::{Atlas, Footprint, PageSamples, PageSize};
 use crate::scene::{Geometry, Scene, ShadingNormals};
@@ -18,8 +19,8 @@ use std::collections::HashMap;
 
 /// Cosine of the angle by which shading normals of one surface may differ: two and a half degrees.
 const SAME_NORMAL: f64 = 0.999;
-/// Cosine of the angle by which the triangles themselves may differ: forty-five degrees. Larger angles belong to wires and bars
-/// of four or five sides, whose sides see different halves of the world however smooth their normals.
+/// Cosine of the angle by which the triangles themselves may differ: forty-five degrees. Larger angles belong to wires
+/// and bars of four or five sides, whose sides see different halves of the world however smooth their normals.
 const SAME_PLANE: f64 = 0.7;
 /// Sides that differ by more than this are taken to differ in truth, as where another surface ends at the seam.
 const MOST_DIFFERENCE: f64 = 0.25;
@@ -35,8 +36,8 @@ const ITERATIONS: usize = 60;
 
 /// The seams of a page.
 pub struct Seams {
-    /// For each point, eight texels (indices in `texels`): those of one side with their weights, those of the other with
-    /// theirs negated.
+    /// For each point, eight texels (indices in `texels`): those of one side with their weights, those of the other
+    /// with theirs negated.
     points: Vec<[(u32, f64); 8]>,
     /// For each texel, the points that it is part of, by `first`.
     of_texel: Vec<(u32, f64)>,

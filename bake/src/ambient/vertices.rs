@@ -1,10 +1,11 @@
 //! Ambient visibility of vertices, for engines without a second set of texture coordinates.
 //!
-//! A vertex stands for the surface around it. Its rays start from one point in each of its triangles, an eighth of the way to the
-//! triangle's middle, so that none starts on an edge where walls meet. Points inside a solid are skipped; otherwise every vertex
-//! that touches the ground would be darkened from below. Vertices of an instance with the same position and normal (split by
-//! texture coordinates, for instance) share one value. Vertices cannot hold detail inside a large triangle (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4),
-//! 2011, discuss what they can).
+//! A vertex stands for the surface around it. Its rays start from one point in each of its triangles, an eighth of the
+//! way to the triangle's middle, so that none starts on an edge where walls meet. Points inside a solid are skipped;
+//! otherwise every vertex that touches the ground would be darkened from below. Vertices of an instance with the same
+//! position and normal (split by texture coordinates, for instance) share one value. Vertices cannot hold detail inside
+//! a large triangle (Kavan, Bargteil and Sloan, "Least squares vertex baking", *Computer Graphics Forum* 30(4), 2011,
+//! discuss what they can).
 
 use super::estimate::{AmbientEngine, Estimates, solve_ambient};
 use super::point::AmbientPoint;
@@ -15,9 +16,9 @@ use std::collections::HashMap;
 /// How far a corner's point is moved towards the middle of its triangle.
 const PULL: f64 = 0.125;
 
-/// For each instance, the ambient visibility of each vertex of its mesh, 0 to 1; of double-sided surfaces, that of the side with
-/// more. Instances that are air have 1. `on_progress` gets the number of positions that were done and returns false to stop; then
-/// there is no answer. The second value is the number of rays traced.
+/// For each instance, the ambient visibility of each vertex of its mesh, 0 to 1; of double-sided surfaces, that of the
+/// side with more. Instances that are air have 1. `on_progress` gets the number of positions that were done and returns
+/// false to stop; then there is no answer. The second value is the number of rays traced.
 pub fn ambient_visibility_of_vertices(
     engine: &AmbientEngine,
     scene: &Scene,
@@ -56,8 +57,8 @@ fn lighter_sides(runs: &[Estimates]) -> Vec<f32> {
     visibility
 }
 
-/// Adds the points of an instance's vertices to `places`, one entry per position and normal. Gives the entry of each vertex, or
-/// `u32::MAX` for a vertex without a triangle.
+/// Adds the points of an instance's vertices to `places`, one entry per position and normal. Gives the entry of each
+/// vertex, or `u32::MAX` for a vertex without a triangle.
 fn gather(
     scene: &Scene,
     geometry: &Geometry,

@@ -9,8 +9,8 @@ use crate::scene::Scene;
 use crate::settings::BakeSettings;
 use crate::warning::Warning;
 
-/// Unwraps as asked or, where a mesh has too many charts for a page, with less padding or on larger pages. Gives the settings that
-/// were used.
+/// Unwraps as asked or, where a mesh has too many charts for a page, with less padding or on larger pages. Gives the
+/// settings that were used.
 pub(crate) fn fitting_atlas(
     scene: &Scene,
     asked: &BakeSettings,

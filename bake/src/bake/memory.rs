@@ -17,8 +17,8 @@ const BYTES_PER_CORNERS: u64 = 300;
 /// Bytes of a triangle: corners in bake space and in the hierarchy, its box, nodes while building, layout and writing.
 const BYTES_PER_TRIANGLE: u64 = 600;
 
-/// Bytes of a texel while ambient light is baked: for each side an estimate, and its numbers as floats, as codes, and as
-/// bytes on their way to a file; and the points that its rays start from.
+/// Bytes of a texel while ambient light is baked: for each side an estimate, and its numbers as floats, as codes, and
+/// as bytes on their way to a file; and the points that its rays start from.
 fn ambient_bytes(scene: &Scene, request: &AmbientRequest) -> u64 {
     let has_backs = (0..scene.instances.len()).any(|instance| scene.material(instance).is_double_sided);
     let sides = if has_backs { 2 } else { 1 };

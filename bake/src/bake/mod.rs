@@ -70,8 +70,8 @@ pub fn bake(
     })?
 }
 
-/// Bakes a scene in memory: the result of [`bake`], kept instead of written. All pages are held at once, where [`bake`] holds one.
-/// The scene is copied, because [`BakeSettings::leave_out`] changes its materials.
+/// Bakes a scene in memory: the result of [`bake`], kept instead of written. All pages are held at once, where [`bake`]
+/// holds one. The scene is copied, because [`BakeSettings::leave_out`] changes its materials.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! Recommendations in sentences. Every number in them is in the report. What was not measured is either named as such or left out.
+//! Recommendations in sentences. Every number in them is in the report. What was not measured is either named as such
+//! or left out.
 
 use super::report::{CostReport, CostRow, ErrorSummary, How, Sweep};
 use crate::report::{plain, with_unit};
@@ -30,8 +31,8 @@ fn standard(report: &CostReport) -> Option<String> {
         .map_or(String::new(), |error| format!("; ambient occlusion is within {} on average", plain(error.mean, 2)));
     let takes = if row.how == How::Baked { "It takes" } else { "It would take about" };
     Some(format!(
-        "`--preset standard` is within {} minutes of sun a point on average, 99 in 100 within {}{ambient}. {takes} {} here, and {} \
-         on the GPU.",
+        "`--preset standard` is within {} minutes of sun a point on average, 99 in 100 within {}{ambient}. \
+         {takes} {} here, and {} on the GPU.",
         plain(error.mean, 2),
         plain(error.p99, 2),
         with_unit(row.seconds?, "s"),
@@ -85,15 +86,16 @@ fn error_sources(report: &CostReport) -> Option<String> {
     let bits = of("bits", "--bits 16")?;
     let rest = match layers + lane {
         known if known < 0.5 * all => {
-            "most of it comes from texels that are larger than the details they show, so more of them (`--size`, `--texels-per-metre`) help most"
+            "most of it comes from texels that are larger than the details they show, so more of them (`--size`, \
+             `--texels-per-metre`) help most"
         }
         _ if layers > lane && layers > 2.0 * bits => "more layers (`--layers`) help most",
         _ if layers > lane => "little is left to gain",
         _ => "more lanes (`--lanes`) help most",
     };
     Some(format!(
-        "`--preset standard` is off by {} minutes; at single texels, four layers of 16 bits are off by {} (rounding alone by {}), and taking the sun \
-         as a line by {}, part of which filtering evens out: {rest}.",
+        "`--preset standard` is off by {} minutes; at single texels, four layers of 16 bits are off by {} (rounding \
+         alone by {}), and taking the sun as a line by {}, part of which filtering evens out: {rest}.",
         plain(all, 2),
         plain(layers, 2),
         plain(bits, 2),
@@ -110,7 +112,8 @@ fn engines(report: &CostReport) -> Option<String> {
     let alike = rays.min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
     let error = alike.sun_min.as_ref()?;
     Some(format!(
-        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel on average, by {} at worst.{}",
+        "`--engine exact` takes {}; the nearest in time, `{}` ({}), is wrong by {} minutes a texel on \
+         average, by {} at worst.{}",
         with_unit(exact_s, "s"),
         alike.name,
         with_unit(alike.seconds?, "s"),

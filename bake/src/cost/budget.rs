@@ -7,8 +7,8 @@ use std::time::Instant;
 /// How far a started run may exceed the budget, as a share of it.
 const GRACE: f64 = 0.1;
 
-/// The wall-clock time that is left. As a [`Progress`], it forwards everything to the caller's, and also cancels what exceeds the
-/// budget.
+/// The wall-clock time that is left. As a [`Progress`], it forwards everything to the caller's, and also cancels what
+/// exceeds the budget.
 pub(super) struct Budget<'a> {
     started: Instant,
     seconds: f64,

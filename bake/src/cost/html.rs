@@ -15,7 +15,8 @@ pub fn html(report: &CostReport) -> String {
     let title = format!("What accuracy costs: {}", report.scene.file);
     let sweeps: String = report.sweeps.iter().map(|sweep| section(sweep, &report.reference)).collect();
     let body = format!(
-        "<h1>{}</h1>\n{}{}{}<h2>How to read this</h2>\n{}{sweeps}<footer>{}; format {} {}. The numbers are in <code>report.json</code>.</footer>",
+        "<h1>{}</h1>\n{}{}{}<h2>How to read this</h2>\n{}{sweeps}<footer>{}; format {} {}. \
+         The numbers are in <code>report.json</code>.</footer>",
         escape(&title),
         facts(report),
         advice(report),
@@ -87,19 +88,20 @@ fn explanation(report: &CostReport) -> String {
         [points, buried_points, page_texels, measured_texels].map(whole);
     let [moments, point_rays, texel_rays] = [moments, point_rays, texel_rays].map(whole);
     format!(
-        "<p><b>Whole bakes</b>: a set is baked, read from its files as a runtime reads it, and compared with the exact answer \
-         at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do \
-         not count). The exact answer is that at the point itself, along {lanes} lanes across the sun's disc, compared at {moments} \
-         moments of the day; and for the sky, the ambient visibility by {point_rays} rays. Where there was no time for a bake, only the texels that \
-         the points read are baked (a sparse bake): its error of sun is the same, its ambient visibility is not stitched at seams, and its time is \
-         a prediction.</p>\n\
-         <p><b>Settings at texels</b> are varied one at a time on {measured_texels} of the {page_texels} texels of a page of {edge}, in \
-         runs of neighbours; seconds are scaled to all of them. Each is compared with the best answer for the same texel (for the \
-         sky {texel_rays} rays), so the error is that of the setting alone, without that of texels that are too large.</p>\n\
-         <p><b>Minutes of sun</b>: for how much of the day the sun is wrong, where half of its disc counts half. \
-         Point at a circle or a dot for its name; a ring marks the knee, the point farthest below the straight line between a curve's ends, both axes being \
-         logarithmic. Where a small page cannot hold all charts there are several, so a smaller `--size` may come out as dense as a \
-         larger one. Click a heading to sort.</p>\n"
+        "<p><b>Whole bakes</b>: a set is baked, read from its files as a runtime reads it, and compared with the exact \
+         answer at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do not \
+         count). The exact answer is that at the point itself, along {lanes} lanes across the sun's disc, compared at \
+         {moments} moments of the day; and for the sky, the ambient visibility by {point_rays} rays. Where there was no \
+         time for a bake, only the texels that the points read are baked (a sparse bake): its error of sun is the same, \
+         its ambient visibility is not stitched at seams, and its time is a prediction.</p>\n\
+         <p><b>Settings at texels</b> are varied one at a time on {measured_texels} of the {page_texels} texels of a \
+         page of {edge}, in runs of neighbours; seconds are scaled to all of them. Each is compared with the best answer \
+         for the same texel (for the sky {texel_rays} rays), so the error is that of the setting alone, without that of \
+         texels that are too large.</p>\n\
+         <p><b>Minutes of sun</b>: for how much of the day the sun is wrong, where half of its disc counts half. Point \
+         at a circle or a dot for its name; a ring marks the knee, the point farthest below the straight line between a \
+         curve's ends, both axes being logarithmic. Where a small page cannot hold all charts there are several, so a \
+         smaller `--size` may come out as dense as a larger one. Click a heading to sort.</p>\n"
     )
 }
 

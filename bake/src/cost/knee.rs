@@ -1,17 +1,19 @@
 //! The knee of a curve of error against time: beyond it, more time gains little.
 //!
 //! Based on: Satopaa, Albrecht, Irwin and Raghavan, "Finding a 'Kneedle' in a Haystack: Detecting Knee Points in System
-//! Behavior", *ICDCS Workshops*, 2011. The curve is scaled to the unit square, and its knee lies where it is farthest from the
-//! chord between its ends. Departures: both numbers are taken as logarithms, since times and errors differ by factors, and
-//! error falls by powers; there is no smoothing, since there are a dozen points and each is a measurement; only
-//! points that no other beats in both time and error are on the curve; and a curve that is nearly straight has no knee.
+//! Behavior", *ICDCS Workshops*, 2011. The curve is scaled to the unit square, and its knee lies where it is farthest
+//! from the chord between its ends. Departures: both numbers are taken as logarithms, since times and errors differ by
+//! factors, and error falls by powers; there is no smoothing, since there are a dozen points and each is a measurement;
+//! only points that no other beats in both time and error are on the curve; and a curve that is nearly straight has no
+//! knee.
 
 /// How far from the chord, in the unit square, a knee must be.
 const LEAST_BEND: f64 = 0.05;
 /// Least ratio of the largest to the smallest error: a curve that is flatter has no knee.
 const LEAST_RATIO: f64 = 1.25;
 
-/// Index of the knee of (time, error) pairs, if there is one. Pairs that are not positive have no logarithm and are skipped.
+/// Index of the knee of (time, error) pairs, if there is one. Pairs that are not positive have no logarithm and are
+/// skipped.
 pub(super) fn knee(points: &[(f64, f64)]) -> Option<usize> {
     let curve = frontier(points);
     let &[(first, x0, y0), .., (_, x1, y1)] = curve.as_slice() else { return None };

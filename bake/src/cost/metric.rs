@@ -39,8 +39,8 @@ pub(super) fn soft(lit: &Intervals, t: f64, width_t: f64) -> f64 {
 /// moments are less than one apart.
 pub(super) const MOMENTS: usize = 1024;
 
-/// The moments of a point as path times. Each point has its own `start` in [0, 1), so that no error falls between the moments of
-/// all points.
+/// The moments of a point as path times. Each point has its own `start` in [0, 1), so that no error falls between the
+/// moments of all points.
 pub(super) fn moments(start: f64) -> impl Iterator<Item = f64> {
     (0..MOMENTS).map(move |k| (k as f64 + start) / MOMENTS as f64)
 }

@@ -1,23 +1,24 @@
 //! What accuracy costs on a scene and a machine: every setting that trades time or bytes for error, measured.
 //!
-//! **Two kinds of measurement.** *Whole bakes* (presets, page sizes, lanes) are real calls of [`crate::bake`] into a folder that is
-//! removed again. Their error is measured at points of surfaces against the exact answer there (`truth.rs`, `playback.rs`), and
-//! includes everything: texels, codes, layers, lanes, filter. *Sweeps at texels* (engines, bits, layers, lanes, rays of sky) change
-//! one setting at a time on a sample of the page's texels, in runs of neighbours, because engines are faster on neighbours. Their
-//! time is scaled to the whole page. Their error is measured against the best answer for the same texel, so it is that of the
-//! setting alone (`sweeps.rs`).
+//! **Two kinds of measurement.** *Whole bakes* (presets, page sizes, lanes) are real calls of [`crate::bake`] into a
+//! folder that is removed again. Their error is measured at points of surfaces against the exact answer there
+//! (`truth.rs`, `playback.rs`), and includes everything: texels, codes, layers, lanes, filter. *Sweeps at texels*
+//! (engines, bits, layers, lanes, rays of sky) change one setting at a time on a sample of the page's texels, in runs
+//! of neighbours, because engines are faster on neighbours. Their time is scaled to the whole page. Their error is
+//! measured against the best answer for the same texel, so it is that of the setting alone (`sweeps.rs`).
 //!
-//! **The error of the sun** at a point is the number of minutes of the day at which visibility is wrong, weighted by how much of the
-//! disc is wrong: `duration * integral of |V - V_reference| dt`. For hard times that is the symmetric difference of two lists. **The
-//! error of the sky** is the difference of ambient visibility.
+//! **The error of the sun** at a point is the number of minutes of the day at which visibility is wrong, weighted by
+//! how much of the disc is wrong: `duration * integral of |V - V_reference| dt`. For hard times that is the symmetric
+//! difference of two lists. **The error of the sky** is the difference of ambient visibility.
 //!
-//! **The budget** is wall-clock time. The most useful runs come first. Each is predicted from earlier ones, and one that would not
-//! fit is not started. One that exceeds the budget by more than a tenth is stopped. A bake that would take too long becomes a sparse
-//! bake: only the texels that the points read are baked, which gives its error, and its time is predicted (`sparse_bake.rs`). The
-//! report lists what was not run, with the prediction. So a small budget gives a short report, not a wrong one.
+//! **The budget** is wall-clock time. The most useful runs come first. Each is predicted from earlier ones, and one
+//! that would not fit is not started. One that exceeds the budget by more than a tenth is stopped. A bake that would
+//! take too long becomes a sparse bake: only the texels that the points read are baked, which gives its error, and its
+//! time is predicted (`sparse_bake.rs`). The report lists what was not run, with the prediction. So a small budget
+//! gives a short report, not a wrong one.
 //!
-//! Read on: `schedule.rs` (what is run, and in which order), `workload.rs` (the scene), `metric.rs` (errors), `knee.rs`,
-//! `advice.rs` (recommendations), `html.rs` (the page), `report.rs` (the file).
+//! Read on: `schedule.rs` (what is run, and in which order), `workload.rs` (the scene), `metric.rs` (errors),
+//! `knee.rs`, `advice.rs` (recommendations), `html.rs` (the page), `report.rs` (the file).
 
 mod advice;
 mod budget;
@@ -92,8 +93,8 @@ const BUSY_MACHINE: f64 = 0.85;
 fn busy_machine(report: &CostReport) -> Option<String> {
     let share = report.cores_share.filter(|share| *share < BUSY_MACHINE)?;
     Some(format!(
-        "this process got {:.0} % of the time of its threads, so something else ran: seconds are longer than on an idle machine, \
-         and compare with one another only roughly",
+        "this process got {:.0} % of the time of its threads, so something else ran: seconds are longer than on an \
+         idle machine, and compare with one another only roughly",
         100.0 * share
     ))
 }

@@ -1,5 +1,5 @@
-//! What a set shows at points of surfaces, evaluated as a runtime does: at four texels, then blended, and no more than the share of
-//! the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
+//! What a set shows at points of surfaces, evaluated as a runtime does: at four texels, then blended, and no more than
+//! the share of the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
 
 use super::error::CostError;
 use super::metric;

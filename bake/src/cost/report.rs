@@ -1,5 +1,5 @@
-//! `report.json` of `sunbake cost`: format version 1, field by field. Other programs read it, so a change here is a change
-//! of version. `bake/schemas/cost.schema.json` is the same as a JSON schema.
+//! `report.json` of `sunbake cost`: format version 1, field by field. Other programs read it, so a change here is a
+//! change of version. `bake/schemas/cost.schema.json` is the same as a JSON schema.
 
 use crate::report::Machine;
 use serde::{Deserialize, Serialize};
@@ -29,8 +29,9 @@ pub struct CostReport {
     pub budget_s: f64,
     /// Seconds that it took.
     pub spent_s: f64,
-    /// Share of the cores' time that this process got while it measured with all its threads, 0 to 1; null where the system does
-    /// not tell. Where it is well below 1, other processes ran, and seconds are longer than on an idle machine.
+    /// Share of the cores' time that this process got while it measured with all its threads, 0 to 1; null where the
+    /// system does not tell. Where it is well below 1, other processes ran, and seconds are longer than on an idle
+    /// machine.
     pub cores_share: Option<f64>,
     /// What errors are measured against.
     pub reference: CostReference,
@@ -70,14 +71,15 @@ pub struct MeasuredSun {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CostReference {
-    /// Points that whole bakes are compared at, drawn evenly by area over all surfaces that are baked. Points inside solids
-    /// are left out. On double-sided surfaces each point belongs to one side, chosen at random.
+    /// Points that whole bakes are compared at, drawn evenly by area over all surfaces that are baked. Points inside
+    /// solids are left out. On double-sided surfaces each point belongs to one side, chosen at random.
     pub points: u64,
     /// Of the points drawn, how many lie inside a solid.
     pub buried_points: u64,
     /// Lanes across the disc of the exact answer that whole bakes are compared with.
     pub lanes: u64,
-    /// Moments of the day at which soft visibility is compared, evenly spaced from a start that differs from point to point.
+    /// Moments of the day at which soft visibility is compared, evenly spaced from a start that differs from point to
+    /// point.
     pub moments: u64,
     /// Rays of sky for the reference ambient visibility of a point.
     pub point_rays: u64,
@@ -105,8 +107,8 @@ pub struct Sweep {
     pub meaning: String,
     /// The settings, from cheap to expensive.
     pub rows: Vec<CostRow>,
-    /// Name of the row after which more time gains little: the curve's knee, in logarithms of time and error. Null where too few
-    /// rows are measured, or the curve has none.
+    /// Name of the row after which more time gains little: the curve's knee, in logarithms of time and error. Null
+    /// where too few rows are measured, or the curve has none.
     pub knee: Option<String>,
 }
 
@@ -124,8 +126,8 @@ pub struct CostRow {
     pub note: Option<String>,
     /// Seconds that were predicted for the measurement, from runs before; null where none was needed.
     pub predicted_s: Option<f64>,
-    /// Seconds: of a whole bake, all its stages; of a sparse bake, a prediction of that; of a setting at texels, the stage that it
-    /// changes, scaled to all texels of the page.
+    /// Seconds: of a whole bake, all its stages; of a sparse bake, a prediction of that; of a setting at texels, the
+    /// stage that it changes, scaled to all texels of the page.
     pub seconds: Option<f64>,
     /// Bytes of all files of the set; null where none were written.
     pub disk_bytes: Option<u64>,
@@ -176,7 +178,8 @@ impl CostRow {
 pub enum How {
     /// Whole bake: a set was baked and read from its files.
     Baked,
-    /// Sparse bake: only the texels that the points read were baked. The error is that of the whole bake, the seconds are predicted.
+    /// Sparse bake: only the texels that the points read were baked. The error is that of the whole bake, the seconds
+    /// are predicted.
     Sampled,
     /// The setting was varied on a sample of the page's texels.
     #[serde(rename = "turned")]

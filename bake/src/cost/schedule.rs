@@ -1,9 +1,9 @@
 //! The measurements, their order, and their results.
 //!
-//! Presets come first, since most people choose among them; then cheap sweeps at texels; then page sizes and lanes; then expensive
-//! sweeps. The time of a bake is predicted from the time per texel of its stages: engine and sky from the sweeps' sample, the rest
-//! from reading the scene and laying it out. The prediction is corrected by the measured time of the standard preset or, before that
-//! is known, of the last bake.
+//! Presets come first, since most people choose among them; then cheap sweeps at texels; then page sizes and lanes;
+//! then expensive sweeps. The time of a bake is predicted from the time per texel of its stages: engine and sky from
+//! the sweeps' sample, the rest from reading the scene and laying it out. The prediction is corrected by the measured
+//! time of the standard preset or, before that is known, of the last bake.
 
 use super::budget::Budget;
 use super::error::CostError;

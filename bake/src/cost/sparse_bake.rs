@@ -1,10 +1,10 @@
 //! A bake of only the texels that are read: what a set would show at points, without baking the rest of it.
 //!
-//! The scene is laid out as for the whole bake. Of the four texels around every point, each that is covered is baked; others take the
-//! value of their source in the gutter. Times are encoded with the bits, layers and lanes of the bake, and compared as if they had
-//! been read from its files: the sun's errors are the same to the last bit (a test compares the two). Ambient visibility lacks
-//! the stitching of seams and the filling of buried texels, which need the whole page. Seconds are a prediction. Only the bytes on
-//! the GPU are known, from the layers that these texels need.
+//! The scene is laid out as for the whole bake. Of the four texels around every point, each that is covered is baked;
+//! others take the value of their source in the gutter. Times are encoded with the bits, layers and lanes of the bake,
+//! and compared as if they had been read from its files: the sun's errors are the same to the last bit (a test compares
+//! the two). Ambient visibility lacks the stitching of seams and the filling of buried texels, which need the whole
+//! page. Seconds are a prediction. Only the bytes on the GPU are known, from the layers that these texels need.
 
 use super::budget::Budget;
 use super::playback::{self, PlaybackErrors, PlayedMaps, WeightedTexels};

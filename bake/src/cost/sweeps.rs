@@ -1,9 +1,11 @@
-//! Sweeps of one setting at a time on runs of neighbouring texels of the page, each against the best answer for the same texel.
+//! Sweeps of one setting at a time on runs of neighbouring texels of the page, each against the best answer for the
+//! same texel.
 //!
-//! * *Engines*: minutes in which a list differs from the exact one. `exact` is the reference, so its error is zero; other tests
-//!   compare it with brute force.
+//! * *Engines*: minutes in which a list differs from the exact one. `exact` is the reference, so its error is zero;
+//!   other tests compare it with brute force.
 //! * *Bits* and *layers*: minutes in which the stored list differs from the exact one.
-//! * *Lanes*: minutes by which the disc's visibility differs from that of [`truth::LANES`] lanes at the same texel, before anything is stored.
+//! * *Lanes*: minutes by which the disc's visibility differs from that of [`truth::LANES`] lanes at the same texel,
+//!   before anything is stored.
 //! * *Sky*: difference of ambient visibility from that of [`RAYS`] rays with another seed.
 
 use super::budget::Budget;

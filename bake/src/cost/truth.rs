@@ -1,8 +1,8 @@
 //! The true answer at points of surfaces: how much of the sun's disc each sees at which time, and how much of the sky.
 //!
-//! Points are drawn evenly by area over everything that is baked: one in each of equal shares of the area. The sun is found by the
-//! exact engine along [`LANES`] lanes at the point itself, not at a texel; the sky by [`RAYS`] rays with a seed that no bake uses.
-//! Points inside solids are left out.
+//! Points are drawn evenly by area over everything that is baked: one in each of equal shares of the area. The sun is
+//! found by the exact engine along [`LANES`] lanes at the point itself, not at a texel; the sky by [`RAYS`] rays with a
+//! seed that no bake uses. Points inside solids are left out.
 
 use super::budget::Budget;
 use super::metric;
@@ -144,7 +144,8 @@ fn sun(workload: &Workload, points: &[SurfaceSample], budget: &Budget) -> Option
     Some(workload.on_threads(|| points.par_iter().zip(answers.par_chunks(lanes.len())).map(of_place).collect()))
 }
 
-/// For a double-sided surface the list tells when either side is lit; a side is lit only while the sun is in front of it.
+/// For a double-sided surface the list tells when either side is lit; a side is lit only while the sun is in front of
+/// it.
 fn of_side(
     place: &SurfaceSample,
     answers: &[Intervals],

@@ -114,7 +114,8 @@ impl Workload {
         value
     }
 
-    /// Share of its threads' time that this process got while all of them worked, 0 to 1; none where the system does not tell.
+    /// Share of its threads' time that this process got while all of them worked, 0 to 1; none where the system does
+    /// not tell.
     pub fn cores_share(&self) -> Option<f64> {
         self.cpu_share.lock().ok()?.share(self.pool.current_num_threads())
     }

@@ -1,7 +1,7 @@
 //! Ambient light as it is stored.
 //!
-//! Ambient visibility is a code of 16 bits: 0 is 0, 65535 is 1. Numbers between -1 and 1 (bent normals, sky coefficients) have
-//! zero in the middle: a code q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
+//! Ambient visibility is a code of 16 bits: 0 is 0, 65535 is 1. Numbers between -1 and 1 (bent normals, sky
+//! coefficients) have zero in the middle: a code q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
 
 use super::Bits;
 

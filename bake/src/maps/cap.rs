@@ -1,12 +1,12 @@
-//! More intervals than slots: which list of at most `cap` intervals is wrong for the shortest time?
+//! More intervals than slots: the list of at most `cap` intervals that is wrong for the shortest time.
 //!
-//! Walk the path's alternating segments, gap, lit, gap, lit, ..., and decide for each whether the stored list calls it
-//! lit. Calling a gap lit costs its length, calling a lit segment dark costs its length, and starting an interval uses a
-//! slot. A table over (slots used, lit or not) finds the least cost exactly, in segments times slots.
+//! Walk the path's alternating segments, gap, lit, gap, lit, ..., and decide for each whether it is stored as lit.
+//! Storing a gap as lit costs its length, storing a lit segment as dark costs its length, and starting an interval uses
+//! a slot. A table over (slots used, lit or not) finds the least cost exactly, in segments times slots.
 
 use crate::visibility::Intervals;
 
-/// Time told wrongly because a texel had more intervals than slots.
+/// Path time that is stored wrongly because a texel had more intervals than slots.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct CapLoss {
     /// Path time that is dark and stored as lit.
@@ -16,14 +16,14 @@ pub struct CapLoss {
 }
 
 impl CapLoss {
-    /// Path time told wrongly either way.
+    /// Path time that is stored wrongly.
     pub fn total_t(&self) -> f64 {
         self.lit_in_error_t + self.dark_in_error_t
     }
 }
 
 /// The list of at most `cap` intervals that differs from `intervals` for the least time. Its ends are ends of the
-/// original's intervals. Unchanged, at no loss, if it fits.
+/// original's intervals. If the list fits it is unchanged, without loss.
 pub fn fit_to_cap(intervals: &Intervals, cap: usize) -> (Intervals, CapLoss) {
     let lit = intervals.as_slice();
     if lit.len() <= cap {
@@ -37,19 +37,19 @@ pub fn fit_to_cap(intervals: &Intervals, cap: usize) -> (Intervals, CapLoss) {
     (fitted, loss)
 }
 
-/// What the stored list says during a lit segment, and how it got there.
+/// How a lit segment is stored.
 #[derive(Clone, Copy, PartialEq)]
 enum Step {
     /// The segment is stored as dark.
     Skip,
     /// An interval starts with this segment.
     Open,
-    /// The interval of the segment before goes on through the gap between.
+    /// The interval of the previous segment continues through the gap between.
     Extend,
 }
 
-/// Dynamic programme over lit segments. `cost[used][on]`: least cost so far, with `used` slots, where the stored list is
-/// lit (`on`) at the end of the segment or not.
+/// Dynamic programme over lit segments. `cost[used][on]`: least cost so far, with `used` slots, where the stored list
+/// is lit (`on`) at the end of the segment or not.
 fn choose(lit: &[[f64; 2]], cap: usize) -> Vec<[f64; 2]> {
     let mut cost = vec![[f64::INFINITY; 2]; cap + 1];
     cost[0][0] = 0.0;

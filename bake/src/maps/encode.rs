@@ -1,4 +1,4 @@
-//! Intervals into codes, with an account of what was lost.
+//! Encoding intervals, with the losses.
 
 use super::{Bits, CapLoss, LayerMaps, fit_to_cap};
 use crate::visibility::Intervals;
@@ -6,9 +6,9 @@ use crate::visibility::Intervals;
 /// What storing a texel's intervals lost, in path time.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EncodeLoss {
-    /// For want of slots.
+    /// By having fewer slots than intervals.
     pub cap: CapLoss,
-    /// By rounding edges to codes: sum of what each edge moved.
+    /// By rounding edges to codes: the sum of how far each edge moved.
     pub quantised_t: f64,
 }
 

@@ -1,15 +1,15 @@
-//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in `shaders/src/wgsl/baked`,
-//! with the same names in the same order.
+//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in
+//! `shaders/src/wgsl`, with the same names in the same order.
 //!
-//! The sun's disc, while it crosses a shadow's edge, is taken as a line along its path (the chapter's linear light):
-//! `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`, w being the sun's width in t.
+//! While the sun's disc crosses a shadow's edge it is approximated by a line along its path (the chapter's linear
+//! light): `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`, w being the sun's width in t.
 
 use super::{Bits, LayerMaps};
 
 /// Share of the sun that a texel sees at `t`, in [0, 1].
 ///
 /// `width_t` is the sun's width in path time ([`crate::sun::SunPath::width_t`]); widths of less than one code step are
-/// widened to one, since the codes know no better.
+/// widened to one, which is the precision of the codes.
 pub fn soft_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, width_t: f32) -> f32 {
     let max_code = f32::from(bits.max_code());
     let width_codes = (width_t * max_code).max(1.0);
@@ -26,7 +26,7 @@ pub fn soft_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, w
     (lit_codes / width_codes).min(1.0)
 }
 
-/// Whether a texel sees a sun without width at `t`: 1 from each stored rise to its fall, both included, else 0.
+/// Visibility of a sun without width at `t`: 1 from each stored rise to its fall, both included, else 0.
 pub fn hard_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32) -> f32 {
     let now = t * f32::from(bits.max_code());
     for layer in layers {

@@ -1,15 +1,15 @@
-//! Lanes: the sun's disc as a few lines along its path. One line is the chapter's linear light; it leaves edges hard that
-//! run along the path, since the whole line crosses them at once.
+//! Lanes: the sun's disc as a few lines along its path. One line is the chapter's linear light. With it, edges that run
+//! along the path stay hard, since the whole line crosses them at once.
 //!
 //! Theory: cut a disc of radius 1 into strips along the path. Up to the height y there lie
 //!
 //! * `1/2 + (y sqrt(1 - y^2) + asin y) / pi` of its area, and
 //! * `(asin y - y sqrt(1 - y^2) (1 - 2 y^2)) / (4 pi)` of its second moment, the integral of y^2 over the area.
 //!
-//! Practice: strips of equal width; a lane weighs what its strip's area does, and lies at the strip's radius of gyration,
-//! the root of its mean y^2. Then the chord at the lane's offset is the root mean square of the strip's chords, weighed by
-//! area, so that no other number need be stored, and the outer lanes spread light as widely as their strips do, along the
-//! path and across it. The middle lane lies on the path, and its window is the whole diameter.
+//! Practice: strips of equal width. A lane's weight is its strip's area, and it lies at the strip's radius of gyration,
+//! the root of its mean y^2. Then the chord at the lane's offset is the root mean square of the strip's chords,
+//! weighted by area, so that no other number needs to be stored, and the outer lanes spread light as widely as their
+//! strips do, along the path and across it. The middle lane lies on the path, and its window is the whole diameter.
 //!
 //! Over straight edges in all directions and at all places from rim to rim, what lanes see differs from the disc's free
 //! share by, on average:
@@ -22,8 +22,8 @@
 //!
 //! Across the path, where the chords matter, the gyration's largest difference is the least too: 0.015 with 3 lanes and
 //! 0.008 with 5; the middles' are 0.021 and 0.012. Windows as wide as a strip's plain mean chord do worse than all of
-//! these (0.0192 and 0.0086 on average). An edge just along the path is a stair of as many steps as lanes, off by half a
-//! weight at most: 0.21 with 3 lanes, 0.13 with 5.
+//! these (0.0192 and 0.0086 on average). An edge exactly along the path has as many steps as lanes, each off by at most
+//! half a weight: 0.21 with 3 lanes, 0.13 with 5.
 
 use std::f64::consts::PI;
 
@@ -59,7 +59,8 @@ impl Lane {
         (0..count).map(lane).collect()
     }
 
-    /// The lane's chord across a disc, as a share of its diameter: its window in path time, as a share of the sun's width.
+    /// The lane's chord across a disc, as a share of its diameter: its window in path time, as a share of the sun's
+    /// width.
     pub fn chord(&self, angular_radius_rad: f64) -> f64 {
         let offset = if angular_radius_rad > 0.0 { self.offset_rad / angular_radius_rad } else { 0.0 };
         (1.0 - offset * offset).max(0.0).sqrt()
@@ -97,8 +98,8 @@ mod tests {
         lanes.iter().map(lit).sum()
     }
 
-    /// Differences from the disc's free share, over edges from rim to rim: the mean over all directions, the largest along
-    /// the path, and the largest across it.
+    /// Differences from the disc's free share, over edges from rim to rim: the mean over all directions, the largest
+    /// along the path, and the largest across it.
     fn errors(lanes: &[Lane]) -> [f64; 3] {
         let places = || (-1000..=1000).map(|i| f64::from(i) / 1000.0);
         let off = |angle_deg: i32| {

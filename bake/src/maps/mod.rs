@@ -1,8 +1,8 @@
 //! Maps: intervals as they are stored, four to an RGBA texel pair.
 //!
 //! A *layer* is a pair of RGBA textures, `rise` and `fall`; channel c of layer l holds interval 4 l + c of its texel. A
-//! code q of b bits means `t = q / (2^b - 1)`. An unused slot has rise = max and fall = 0: its length is never positive,
-//! so an evaluator needs no count and no branch.
+//! code q of b bits means `t = q / (2^b - 1)`. An unused slot has rise = max and fall = 0: its length is never
+//! positive, so an evaluator needs no count and no branch.
 
 mod ambient;
 mod cap;
@@ -109,7 +109,8 @@ pub struct PageMaps {
     pub height: u32,
     /// Empty where there is no sun in the set.
     pub lanes: Vec<LaneMaps>,
-    /// When texels see the lamp, where the set has one: as many layers as the page's busiest texel needs, up to the cap.
+    /// When texels see the lamp, where the set has one: as many layers as the page's busiest texel needs, up to the
+    /// cap.
     pub lamp: Option<Vec<LayerMaps>>,
     /// How much of the sky texels see, where the set has it.
     pub ambient: Option<AmbientMaps>,

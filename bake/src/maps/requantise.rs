@@ -1,7 +1,7 @@
-//! Maps of sixteen bits as maps of eight: the same times, rounded again.
+//! Maps of 16 bits converted to 8 bits: the same times, rounded again.
 //!
-//! A code of 16 bits is 257 codes of 8. An edge that lies within a 514th of a code of the middle between two may be rounded to the
-//! other one than it would have been at first; all others are as if they had been baked with 8 bits.
+//! A code of 16 bits is 257 codes of 8. An edge that lies within a 514th of a code of the middle between two may be
+//! rounded to the other one than it would have been at first; all others are as if they had been baked with 8 bits.
 
 use super::{Bits, LayerMaps, PageMaps};
 
@@ -22,7 +22,7 @@ impl PageMaps {
 /// An unused slot stays one: its rise is the largest code, its fall 0.
 fn requantise(layer: &mut LayerMaps) {
     let codes = layer.rise.iter_mut().chain(&mut layer.fall).flatten();
-    // Without leaving 16 bits: half a step more than the largest code is too much for them.
+    // Computed within 16 bits: adding half a step to the largest code would overflow.
     codes.for_each(|code| *code = *code / CODES + u16::from(*code % CODES > CODES / 2));
 }
 
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_what_baking_with_eight_bits_would_have_made() {
+    fn converted_maps_are_those_of_a_bake_with_8_bits() {
         // Edges at steps that no code has.
         let list = |i: usize| {
             let start = 0.6 * (i as f64 * 0.618_034).fract();

@@ -1,8 +1,9 @@
 //! The effect plan: which effects this scene and request call for, decided before anything runs.
 //!
-//! `times.rs`, `surfaces.rs` and `ambient.rs` decide and keep the facts they decided by; `wording.rs` puts a decision into
-//! sentences; `columns.rs` sets them in columns. What is off costs nothing: no ray, no texture, no loop. One effect is known only
-//! afterwards: how many layers texels need. It is on where there may be several, and [`EffectPlan::after_bake`] corrects it.
+//! `times.rs`, `surfaces.rs` and `ambient.rs` decide and keep the facts they decided by; `wording.rs` puts a decision
+//! into sentences; `columns.rs` sets them in columns. What is off costs nothing: no ray, no texture, no loop. One
+//! effect is known only afterwards: how many layers texels need. It is on where there may be several, and
+//! [`EffectPlan::after_bake`] corrects it.
 
 mod ambient;
 mod columns;
@@ -189,7 +190,8 @@ pub struct LayersNeeded {
 }
 
 impl EffectPlan {
-    /// Decides from the scene, the paths and what is asked for; `no_sun` says why there is no sun's path, where there is none.
+    /// Decides from the scene, the paths and what is asked for; `no_sun` says why there is no sun's path, where there
+    /// is none.
     pub fn new(
         scene: &Scene,
         path: Option<&SunPath>,

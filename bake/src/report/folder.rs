@@ -1,4 +1,4 @@
-//! A report's folder: `report.json` for programs, `report.html` for people, and what they show.
+//! A report's folder: `report.json` for programs, `report.html` for people, and pictures.
 
 use crate::disk::folder::{FolderKind, FolderWriter};
 use std::io::Write;
@@ -6,13 +6,14 @@ use std::path::Path;
 
 pub use crate::disk::folder::FolderError;
 
-/// Name of a report for programs, which also tells a folder that `--force` may replace.
+/// Name of a report for programs. A folder that holds it may be replaced by force.
 pub const REPORT_JSON: &str = "report.json";
 /// Name of a report for people.
 pub const REPORT_HTML: &str = "report.html";
 
-/// Opens a report's folder beside `target`: early, since nobody should wait for a report that cannot be kept. An older
-/// report there is replaced if `force` says so, and anything else never: it is known by its file `marker`.
+/// Opens a report's folder beside `target`, before anything is measured: nobody should wait for a report that cannot be
+/// written. With `force` an older report there is replaced, which is recognised by its file `marker`; anything else is
+/// never replaced.
 pub fn begin(target: &Path, force: bool, marker: &'static str) -> Result<FolderWriter, FolderError> {
     FolderWriter::begin(target, force, FolderKind { marker, what: "a report", noun: "report" })
 }

@@ -1,8 +1,8 @@
-//! The machine that times were taken on. Seconds mean little without it.
+//! The machine on which times were measured.
 
 use serde::{Deserialize, Serialize};
 
-/// A machine, as far as it tells.
+/// A machine, as far as the system describes it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Machine {
@@ -17,7 +17,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// This machine, of which so many threads do the work; 0 is one a core.
+    /// This machine, with this many working threads; 0 means one per core.
     pub fn here(threads: usize) -> Self {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores } else { threads };
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_model_is_read_where_it_is_told() {
+    fn the_model_is_read_where_it_is_given() {
         let text = "processor\t: 0\nmodel\t\t: 143\nmodel name\t: Intel(R) Xeon(R)\nmodel name\t: other\n";
         assert_eq!(model(text).as_deref(), Some("Intel(R) Xeon(R)"));
         assert_eq!([model(""), model("model name\t:\n")], [None, None]);

@@ -1,7 +1,8 @@
-//! Reports: what was measured, as one HTML page and one JSON file that need nothing else, no network least of all.
+//! Reports: measurements as one HTML page and one JSON file. Both are self-contained and need no network.
 //!
-//! `sunbake cost` and `sunplay compare` write theirs by it, so that both read alike. [`page`](page()) makes the document,
-//! [`Table`] and [`plot`] what stands in it, [`folder`] the folder, [`Machine`] says where the times were taken.
+//! `sunbake cost` and `sunplay compare` both use it, so that their reports look alike. [`page`](page()) makes the
+//! document, [`Table`] and [`plot`] its contents, [`folder`] the folder; [`Machine`] describes the machine on which
+//! times were measured.
 
 pub mod folder;
 mod machine;

@@ -1,7 +1,7 @@
-//! Numbers as people read them.
+//! Numbers formatted for reading.
 
-/// A number with so many significant digits, in plain notation: `0.0123`, `4.5`, `12,300`. What is too small for that, or not
-/// finite, is told as computers do.
+/// A number with this many significant digits, in plain notation: `0.0123`, `4.5`, `12,300`. Very small and very large
+/// numbers, and those that are not finite, are in scientific notation.
 pub fn plain(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
@@ -18,12 +18,12 @@ pub fn plain(value: f64, digits: usize) -> String {
     grouped(value.round())
 }
 
-/// A count, its thousands apart: `12,345`.
+/// A count with thousands separated: `12,345`.
 pub fn whole(count: u64) -> String {
     grouped(count as f64)
 }
 
-/// A number with three digits and its unit; of bytes and seconds, in the unit that suits.
+/// A number with three significant digits and its unit; bytes and seconds in a suitable multiple.
 pub fn with_unit(value: f64, unit: &str) -> String {
     match unit {
         "bytes" => bytes(value),
@@ -42,7 +42,7 @@ fn bytes(value: f64) -> String {
     }
 }
 
-/// A whole number, its thousands apart.
+/// A whole number with thousands separated.
 fn grouped(value: f64) -> String {
     let digits = format!("{:.0}", value.abs());
     let mut text = String::from(if value < 0.0 { "-" } else { "" });

@@ -1,12 +1,12 @@
-//! One HTML document that needs no network, and may not use any.
+//! One HTML document that needs no network; its content security policy forbids any.
 
-/// How every report looks.
+/// The style of every report.
 const STYLE: &str = include_str!("page.css");
-/// What every report can do: sort its tables.
+/// The script of every report: sorting tables.
 const SCRIPT: &str = include_str!("sort.js");
 
-/// An HTML document. `title` is text; `style`, `body` and `script` are CSS, HTML and JavaScript of one's own, put after what
-/// all reports share, and taken as they are: no text from elsewhere belongs in them unless by [`escape`].
+/// An HTML document. `title` is text; `style`, `body` and `script` are CSS, HTML and JavaScript, put after those of
+/// all reports and used as they are: text from elsewhere must go through [`escape`].
 pub fn page(title: &str, style: &str, body: &str, script: &str) -> String {
     let title = escape(title);
     format!(
@@ -30,7 +30,8 @@ pub fn page(title: &str, style: &str, body: &str, script: &str) -> String {
     )
 }
 
-/// Text as HTML, also within an attribute in either kind of quotes. What is no character of HTML becomes a space.
+/// Text as HTML, also valid within an attribute in either kind of quotes. Characters that HTML does not allow become
+/// spaces.
 pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

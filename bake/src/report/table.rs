@@ -1,15 +1,15 @@
-//! Tables whose rows a reader can put in order.
+//! Tables that a reader can sort.
 
 use super::page::escape;
 
-/// A table, sorted by its headings where the page runs its script.
+/// A table. Clicking a heading sorts it, where the page may run its script.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Table {
-    /// What it shows, above it; none where it is empty.
+    /// Caption above it; none where it is empty.
     pub caption: String,
     /// The columns.
     pub columns: Vec<Column>,
-    /// The rows, in their first order.
+    /// The rows, in their initial order.
     pub rows: Vec<Row>,
 }
 
@@ -18,11 +18,11 @@ pub struct Table {
 pub struct Column {
     /// Its heading.
     pub heading: String,
-    /// What it means: shown when a pointer rests on the heading.
+    /// What it means: the tooltip of the heading.
     pub explanation: String,
-    /// Unit of its numbers; empty where they have none, or the cells say it.
+    /// Unit of its numbers; empty where they have none, or the cells contain it.
     pub unit: String,
-    /// Whether it holds numbers, which stand to the right.
+    /// Whether it holds numbers, which are aligned to the right.
     pub is_number: bool,
 }
 
@@ -41,11 +41,11 @@ impl Column {
 /// A row.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Row {
-    /// One a column; missing ones are empty.
+    /// One per column; missing ones are empty.
     pub cells: Vec<Cell>,
-    /// Whether it stands out.
+    /// Whether it is highlighted.
     pub is_marked: bool,
-    /// Whether it steps back: what was not measured.
+    /// Whether it is greyed out: for what was not measured.
     pub is_muted: bool,
     /// Its `id`, if it has one.
     pub id: Option<String>,
@@ -60,12 +60,12 @@ impl Row {
     }
 }
 
-/// What a cell shows, and what it is sorted by.
+/// A cell: its HTML, and the number it is sorted by.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cell {
     /// HTML.
     html: String,
-    /// The number that it is sorted by; none: it is sorted by its words, or in a column of numbers comes last.
+    /// The number it is sorted by. Without one it is sorted by its text, or in a column of numbers comes last.
     value: Option<f64>,
 }
 
@@ -80,7 +80,7 @@ impl Cell {
         Self { html: escape(shown), value: Some(value).filter(|value| value.is_finite()) }
     }
 
-    /// HTML of one's own, with the number that it is sorted by, if there is one.
+    /// HTML, with the number it is sorted by, if there is one.
     pub fn html(html: String, value: Option<f64>) -> Self {
         Self { html, value: value.filter(|value| value.is_finite()) }
     }

@@ -33,7 +33,8 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     parse_within(path, &bytes, &budget)
 }
 
-/// Reads the bytes of a glTF or GLB file. Messages name it by `path`, and files that it names are looked for beside that.
+/// Reads the bytes of a glTF or GLB file. Messages name it by `path`, and files that it names are looked for beside
+/// that.
 ///
 /// # Errors
 ///

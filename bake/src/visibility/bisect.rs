@@ -1,16 +1,18 @@
 //! N rays a point, then bisection where the answer changes: edges as precise as asked for, at logarithmic cost.
 //!
-//! Theory: between a visible and an occluded position of the sun lies an edge, and a ray half-way tells in which half. So k rays
-//! find an edge to `1/2^k` of a coarse step, where evenly spaced rays would need `2^k` times as many positions.
+//! Theory: between a visible and an occluded position of the sun lies an edge, and a ray half-way tells in which half.
+//! So k rays find an edge to `1/2^k` of a coarse step, where evenly spaced rays would need `2^k` times as many
+//! positions.
 //!
-//! Practice: the horizon and the surface's plane divide the path in closed form, so edges there are exact. Each span between them
-//! has its own positions of the sun: its two ends, and those of the N that fall inside it (the first of the N at t = 0, the last at
-//! t = 1). Every change from one position to the next is bisected until both sides are `2 * edge_seconds` apart, and the edge is
-//! put in the middle. While bisecting, the occluder of the dark side is tested before the hierarchy is walked: the edge is mostly its.
+//! Practice: the horizon and the surface's plane divide the path in closed form, so edges there are exact. Each span
+//! between them has its own positions of the sun: its two ends, and those of the N that fall inside it (the first of
+//! the N at t = 0, the last at t = 1). Every change from one position to the next is bisected until both sides are
+//! `2 * edge_seconds` apart, and the edge is put in the middle. While bisecting, the occluder of the dark side is
+//! tested before the hierarchy is walked: the edge is mostly its.
 //!
-//! What is missed: light or shade that begins and ends between two neighbouring positions, so anything shorter than `1/(N - 1)` of
-//! the path may be missed; and of three changes between two positions one is found. Edges that are found are off by at most
-//! `edge_seconds`.
+//! What is missed: light or shade that begins and ends between two neighbouring positions, so anything shorter than
+//! `1/(N - 1)` of the path may be missed; and of three changes between two positions one is found. Edges that are found
+//! are off by at most `edge_seconds`.
 
 use super::probe::{Probe, SurfaceSide};
 use super::{Engine, IntervalTable, Intervals, Session, Work};
@@ -174,7 +176,8 @@ impl Search<'_> {
         self.lit.extend(lit_since.map(|since| [since, last_t]));
     }
 
-    /// From one moment to the next: adds the lit interval that ended between them, and gives the start of the current one.
+    /// From one moment to the next: adds the lit interval that ended between them, and gives the start of the current
+    /// one.
     fn advance(&mut self, before: Sample, now: Sample, lit_since: Option<f64>, side: SurfaceSide) -> Option<f64> {
         if before.is_lit() == now.is_lit() {
             return lit_since;

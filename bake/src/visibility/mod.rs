@@ -1,8 +1,9 @@
 //! Lit intervals: when each surface point sees the sun or a lamp.
 //!
 //! `V(x, t)` is 1 where the sun's centre is above the world horizon, above the surface's plane, and not occluded. An
-//! [`Engine`] finds all lit intervals of a point at once. For a double-sided surface, rays start on the side that faces the sun.
-//! So one list serves both of its faces: at any moment the sun is in front of exactly one of them, and the runtime knows which.
+//! [`Engine`] finds all lit intervals of a point at once. For a double-sided surface, rays start on the side that faces
+//! the sun. So one list serves both of its faces: at any moment the sun is in front of exactly one of them, and the
+//! runtime knows which.
 
 mod bisect;
 mod exact;
@@ -28,8 +29,8 @@ pub trait Engine: Sync {
     /// How many paths it finds intervals for.
     fn lane_count(&self) -> usize;
 
-    /// Starts a run of neighbouring points. A session may reuse what it found at one point for the next, as long as no answer
-    /// depends on it: the same point has the same answer in any session.
+    /// Starts a run of neighbouring points. A session may reuse what it found at one point for the next, as long as no
+    /// answer depends on it: the same point has the same answer in any session.
     fn session(&self) -> Box<dyn Session + '_>;
 }
 
@@ -75,9 +76,9 @@ pub fn lit_at(engine: &dyn Engine, point: &SurfacePoint) -> Vec<Intervals> {
 /// How many neighbouring points a session is given.
 const RUN: usize = 1024;
 
-/// Finds the lit intervals of every point, on all threads of the current pool. Answers come in the order of the points; for each
-/// point one list for each of the engine's lanes.
-/// `on_progress` gets the number of points that were done and returns false to stop; then there is no answer.
+/// Finds the lit intervals of every point, on all threads of the current pool. Answers come in the order of the points;
+/// for each point one list for each of the engine's lanes. `on_progress` gets the number of points that were done and
+/// returns false to stop; then there is no answer.
 pub fn solve_visibility(
     engine: &dyn Engine,
     point_count: usize,

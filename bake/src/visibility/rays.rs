@@ -1,14 +1,15 @@
 //! N rays a point: the method of the chapter, and the baseline for the others.
 //!
-//! Based on *GPU Gems* chapter 13, section 13.3.2. The path is cut into N equal steps, and a ray is traced at the middle
-//! of each; the step is lit or dark as its ray is, so edges land half-way between rays. What lies between two rays and
-//! touches neither is missed: errors are up to 1/(2N) of the path an edge, and features thinner than 1/N may vanish.
+//! Based on *GPU Gems* chapter 13, section 13.3.2. The path is cut into N equal steps, and a ray is traced at the
+//! middle of each; the step is lit or dark as its ray is, so edges land half-way between rays. What lies between two
+//! rays and touches neither is missed: errors are up to 1/(2N) of the path an edge, and features thinner than 1/N may
+//! vanish.
 //!
-//! Positions of the sun below the horizon or behind the surface cost no ray. Two guesses are tested before the hierarchy is walked:
-//! the last occluder of the same position, since neighbours are mostly shaded by the same thing, and the occluder of the previous
-//! position, since shade mostly lasts for a while. On pages of 256 with 256 suns, the second makes scenes full of
-//! shade faster (littlest_tokyo by 3.5 times, two_cylinder_engine by 2.1) and leaves those with open ground as they were
-//! (gas_station, truck_town). The other order makes no measurable difference.
+//! Positions of the sun below the horizon or behind the surface cost no ray. Two guesses are tested before the
+//! hierarchy is walked: the last occluder of the same position, since neighbours are mostly shaded by the same thing,
+//! and the occluder of the previous position, since shade mostly lasts for a while. On pages of 256 with 256 suns, the
+//! second makes scenes full of shade faster (littlest_tokyo by 3.5 times, two_cylinder_engine by 2.1) and leaves those
+//! with open ground as they were (gas_station, truck_town). The other order makes no measurable difference.
 
 use super::probe::{Probe, side_towards};
 use super::{Engine, IntervalTable, Intervals, Session, Work};

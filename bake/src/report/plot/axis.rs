@@ -1,31 +1,31 @@
-//! An axis: where values lie on it, and which of them are written beside it.
+//! An axis: the mapping from values to pixels, and its tick labels.
 
 use super::super::number::plain;
 
-/// Pixels at the lower end of a logarithmic axis that are kept for what is zero or less, where there is any.
+/// Pixels at the lower end of a logarithmic axis that are reserved for values of zero or less, where there are any.
 const ZERO_BAND: f64 = 34.0;
-/// Free rect beyond the outermost values, as a share of the axis.
+/// Free space beyond the outermost values, as a share of the axis.
 const ROOM: f64 = 0.07;
-/// About how many values are written beside an axis.
+/// Approximate number of tick labels.
 const TICKS: f64 = 6.0;
 
 /// From values to pixels.
 #[derive(Debug, Clone)]
 pub(super) struct Scale {
     is_log: bool,
-    /// Ends, as they are or as their logarithm.
+    /// The values at the ends, or their logarithms.
     ends: [f64; 2],
-    /// Where the ends lie.
+    /// The pixels of the ends.
     pixels: [f64; 2],
-    /// Where zero and less lies on a logarithmic axis, if there is any.
+    /// The pixel of zero and less on a logarithmic axis, if there is any.
     pub zero_pixel: Option<f64>,
 }
 
-/// Where a value lies.
+/// The position of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct AxisPosition {
     pub pixel: f64,
-    /// Whether that is the band for zero and less.
+    /// Whether it is the band for zero and less.
     pub is_zero: bool,
 }
 
@@ -41,7 +41,7 @@ impl Scale {
         Self { is_log, ends, pixels: [start, pixels[1]], zero_pixel }
     }
 
-    /// Where a value lies; nowhere if it is no finite number.
+    /// The position of a value; none if it is not finite.
     pub fn place(&self, value: f64) -> Option<AxisPosition> {
         if !value.is_finite() {
             return None;
@@ -54,7 +54,7 @@ impl Scale {
         Some(AxisPosition { pixel: self.pixels[0] + share * (self.pixels[1] - self.pixels[0]), is_zero: false })
     }
 
-    /// Values to be written beside the axis, with their pixels.
+    /// Tick labels with their pixels.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         let values = if self.is_log { self.log_ticks() } else { linear_ticks(self.ends) };
         let tick = |value: &f64| Some((self.place(*value)?.pixel, tick_text(*value)));
@@ -114,7 +114,7 @@ fn linear_ticks([low, high]: [f64; 2]) -> Vec<f64> {
     (0..2 * TICKS as usize).map(|k| (first + k as f64) * step).filter(|value| *value <= high).collect()
 }
 
-/// As few digits as tell the number.
+/// The number with as few digits as possible.
 fn tick_text(value: f64) -> String {
     let text = plain(value, 3);
     if text.contains('.') && !text.contains('e') {

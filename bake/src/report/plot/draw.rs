@@ -1,4 +1,4 @@
-//! A plot drawn with plotters, on white: a page may be dark, and ink is chosen for paper.
+//! A plot drawn with plotters, on white, also in a dark page: the colours are chosen for white.
 
 use super::axis::{AxisPosition, Scale};
 use super::labels::{self, LabelAnchor};
@@ -17,7 +17,7 @@ const INK: RGBColor = RGBColor(35, 33, 29);
 const SOFT: RGBColor = RGBColor(106, 101, 92);
 const GRID: RGBColor = RGBColor(232, 228, 219);
 const MARK: RGBColor = RGBColor(180, 80, 30);
-/// Colours that also those can tell apart who see red and green alike (Okabe and Ito, 2008), darkest first.
+/// Colours that are also distinct with red-green colour blindness (Okabe and Ito, 2008), darkest first.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -62,7 +62,7 @@ impl Frame {
     }
 }
 
-/// The plot as an SVG element. What plotters cannot draw, which takes a disk to happen, is an empty one.
+/// The plot as an SVG element; empty if plotters fails, which happens only when writing files.
 pub(super) fn svg(plot: &Plot, frame: &Frame) -> String {
     let mut text = String::new();
     {
@@ -137,7 +137,7 @@ fn dot(spot: Spot, area: &Area, color: RGBColor) -> Drawn {
     Ok(())
 }
 
-/// Names beside their points; the mark's first, since it must not be the one without rect.
+/// Names beside their points; the mark's first, since it must find a place.
 fn names(plot: &Plot, frame: &Frame, area: &Area) -> Drawn {
     let of_series = plot.series.iter().enumerate();
     let named =
@@ -176,7 +176,7 @@ fn darker(RGBColor(r, g, b): RGBColor) -> RGBColor {
     RGBColor(scaled(r), scaled(g), scaled(b))
 }
 
-/// Names of the series, in a row below the title; none for a single series.
+/// The legend, in a row below the title; none for a single series.
 fn legend(plot: &Plot, area: &Area) -> Drawn {
     let mut x = MARGIN[0];
     for (k, series) in plot.series.iter().enumerate().filter(|_| plot.series.len() > 1) {
@@ -193,7 +193,7 @@ fn write(area: &Area, text: &str, at: (i32, i32), size: f64, color: &RGBColor, s
     Ok(())
 }
 
-/// What a reader must know of points that have no place of their own.
+/// A note about points that cannot be placed.
 fn notes(plot: &Plot, frame: &Frame) -> String {
     let points = || plot.series.iter().flat_map(|series| &series.points);
     let mut notes = Vec::new();
@@ -208,7 +208,7 @@ fn notes(plot: &Plot, frame: &Frame) -> String {
     notes.join("; ")
 }
 
-/// Gives every point its name and numbers, for a pointer that rests on it, and lets the page choose size and font.
+/// Gives every point a tooltip with its name and numbers, and lets the page choose size and font.
 fn finished(svg: &str, plot: &Plot, frame: &Frame) -> String {
     let tip = |point: &Point| {
         let Spot { at: (x, y), .. } = frame.spot(point)?;

@@ -1,6 +1,7 @@
-//! Where the names of points are written: beside each, without covering another name or point; nowhere if there is no rect.
+//! Placing the names of points: beside each point, without covering another name or point; a name without a place is
+//! left out.
 //!
-//! Greedy: points come in their order, and each takes the first of eight places that is free and on no line; or else the
+//! Greedy: in the order of the points, each takes the first of eight positions that is free and on no line, or else the
 //! first that is free.
 
 /// Pixels from a point's middle to its name.
@@ -18,12 +19,12 @@ pub(super) struct LabelAnchor {
     pub middle: f64,
 }
 
-/// Width of a text, about: fonts differ.
+/// Approximate width of a text: fonts differ.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     0.58 * size * text.chars().count() as f64
 }
 
-/// A anchor for the name of each point, if there is one within the frame; `lines` are pixels that lines pass.
+/// An anchor for the name of each point, if there is a free one within the frame; `lines` are pixels that lines pass.
 pub(super) fn anchors(
     points: &[([f64; 2], &str)],
     lines: &[[f64; 2]],
@@ -45,7 +46,8 @@ pub(super) fn anchors(
     points.iter().map(|point| if point.1.is_empty() { None } else { anchor(point) }).collect()
 }
 
-/// The places about a point, best first: curves of error against time fall to the right, so that up and right is free.
+/// The positions around a point, best first: curves of error against time fall to the right, so that up and right is
+/// free.
 fn around(x: f64, y: f64, wide: f64) -> [LabelAnchor; 8] {
     let (right, left, middle) = (x + GAP, x - GAP - wide, x - 0.5 * wide);
     let (above, below) = (y - 1.5 * GAP, y + 1.5 * GAP);

@@ -1,7 +1,8 @@
-//! Plots of one number against another, as SVG that stands in a page: points with names, joined or not.
+//! Plots of one number against another, as SVG within a page: points with names, joined or not.
 //!
-//! A logarithmic axis has no place for zero, and a plot that leaves a point out lies. So what is zero or less lies in a
-//! band at the axis' lower end, hollow, marked 0; and of what is no number at all, the plot says that it is missing.
+//! A logarithmic axis has no place for zero, and leaving points out would mislead. So points of zero or less are drawn
+//! hollow in a band at the axis' lower end, marked 0. For points that are not numbers, the plot has a note that they
+//! are missing.
 
 mod axis;
 mod draw;
@@ -12,22 +13,22 @@ use axis::Scale;
 /// A plot.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {
-    /// Above it.
+    /// Title above the plot.
     pub title: String,
-    /// To the right.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// Vertical axis.
     pub y: Axis,
-    /// What it shows, in this order.
+    /// The series, in drawing order.
     pub series: Vec<Series>,
-    /// A point that stands out, as the knee of a curve.
+    /// A highlighted point, such as the knee of a curve.
     pub mark: Option<Point>,
 }
 
 /// An axis.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Axis {
-    /// What it counts, with the unit.
+    /// Label with the unit.
     pub label: String,
     /// Whether equal steps are equal ratios.
     pub is_log: bool,
@@ -45,7 +46,7 @@ impl Axis {
     }
 }
 
-/// Points of a colour.
+/// Points of one colour.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
     /// Its name in the legend, which is left out where there is one series.
@@ -63,7 +64,7 @@ pub struct Point {
     pub x: f64,
     /// Upwards.
     pub y: f64,
-    /// Its name, shown where there is rect, and when a pointer rests on it.
+    /// Its name, shown where there is space, and as a tooltip.
     pub label: String,
 }
 

@@ -1,16 +1,16 @@
 //! Which part of an occluded span an alpha-masked triangle really occludes.
 //!
 //! **Theory.** While the sun moves, the point where its ray pierces the triangle runs along a curve, and the texture
-//! coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of the edge normals with the direction.
-//! With `s = tan(h / 2)` a direction is `(1 - s^2, 2 s, 1 + s^2)`, less a factor that falls out, so coordinates are quotients
-//! of quadratics in s, `U / W` and `V / W`. A border between two columns of texels is crossed where `U - k W = 0`: again known
-//! in closed form. So the curve is followed from texel to texel, and none is skipped except within its first microseconds. Squares of
-//! texels that are solid or clear throughout are crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of
-//! a half space.
+//! coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of the edge normals with the
+//! direction. With `s = tan(h / 2)` a direction is `(1 - s^2, 2 s, 1 + s^2)`, less a factor that falls out, so
+//! coordinates are quotients of quadratics in s, `U / W` and `V / W`. A border between two columns of texels is crossed
+//! where `U - k W = 0`: again known in closed form. So the curve is followed from texel to texel, and none is skipped
+//! except within its first microseconds. Squares of texels that are solid or clear throughout are crossed in one step.
+//! In a texel where the corners' own alphas matter, alpha passes the cutoff at the end of a half space.
 //!
-//! **Practice.** A curve is cut where a coordinate turns back ([`Curve`]), and where s would grow beyond one. On each piece
-//! both coordinates run one way, so that just two borders lie ahead, and each is crossed at one known root. `follow.rs` follows
-//! a few at a time.
+//! **Practice.** A curve is cut where a coordinate turns back ([`Curve`]), and where s would grow beyond one. On each
+//! piece both coordinates run one way, so that just two borders lie ahead, and each is crossed at one known root.
+//! `follow.rs` follows a few at a time.
 
 use super::arc::{Declination, half_space, of_diamond};
 use crate::trace::MaskedTriangle;
@@ -23,8 +23,9 @@ pub(super) struct MaskedTriangleView<'a> {
     /// Which triangle of a packet it is, and along which lane it is seen.
     pub slot: usize,
     pub lane: usize,
-    /// For each corner, the normal of the opposite edge with the declination worked in: its product with (cos h, sin h, 1)
-    /// is the corner's weight. Where the triangle is pierced all have one sign, the positive one after [`MaskedTriangleView::side`].
+    /// For each corner, the normal of the opposite edge with the declination worked in: its product with (cos h, sin h,
+    /// 1) is the corner's weight. Where the triangle is pierced all have one sign, the positive one after
+    /// [`MaskedTriangleView::side`].
     weights: [DVec3; 3],
     /// The weights' sums, weighted by each texture coordinate, and their plain sum.
     sums: [DVec3; 3],
@@ -46,8 +47,8 @@ impl<'a> MaskedTriangleView<'a> {
         Self { mask, slot, lane, weights, sums }
     }
 
-    /// 1 if weights are positive on a span on which the triangle is pierced, else -1. It depends on the side that the triangle
-    /// is seen from, and on whether it is pierced ahead of the point or, within the run-up of rays, behind it.
+    /// 1 if weights are positive on a span on which the triangle is pierced, else -1. It depends on the side that the
+    /// triangle is seen from, and on whether it is pierced ahead of the point or, within the run-up of rays, behind it.
     pub fn side(&self, [start, end]: [f64; 2]) -> f64 {
         let [x, y] = of_diamond(0.5 * (start + end));
         1f64.copysign(self.sums[2].dot(DVec3::new(x, y, (x * x + y * y).sqrt())))
@@ -170,8 +171,8 @@ mod tests {
     use super::*;
     use crate::testing::pseudo_random;
 
-    /// A triangle across the sun's way that is solid, by its corners' alphas, on one side: that side is solid whether it lies
-    /// ahead or behind, as it may within the run-up of rays.
+    /// A triangle across the sun's way that is solid, by its corners' alphas, on one side: that side is solid whether
+    /// it lies ahead or behind, as it may within the run-up of rays.
     #[test]
     fn the_solid_part_does_not_depend_on_the_sign_of_the_weights() {
         let equator = Declination { cos: 1.0, sin: 0.0 };

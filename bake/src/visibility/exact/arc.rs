@@ -1,7 +1,7 @@
 //! An arc of the sun's path in a frame of its own, and times along it as numbers that are cheap to compare.
 //!
-//! Frame: z is the arc's axis, x points at the middle of the arc, so that hour angles run from -w to w, w at most half a
-//! turn. In it `dir(h) = (cos d cos h, cos d sin h, sin d)`, and for any vector n
+//! Frame: z is the arc's axis, x points at the middle of the arc, so that hour angles run from -w to w, w at most half
+//! a turn. In it `dir(h) = (cos d cos h, cos d sin h, sin d)`, and for any vector n
 //! `n . dir(h) = A cos h + B sin h + C` with `A = n_x cos d`, `B = n_y cos d`, `C = n_z sin d`.
 //!
 //! Hour angles are held as *diamond angles*: of a vector (x, y), `y / (|x| + |y|)` if x is not negative, else

@@ -1,18 +1,18 @@
 //! Sixteen boxes, or sixteen triangles, at once against the spans of an arc that are still lit. Conservative, in `f32`.
 //!
-//! From one point the suns of an arc lie on a cone about the frame's z axis, and those of a span of hour angle in a wedge
-//! whose edge is that axis. A box, or a triangle by its corners, is skipped if it lies
+//! From one point the suns of an arc lie on a cone about the frame's z axis, and those of a span of hour angle in a
+//! wedge whose edge is that axis. A box, or a triangle by its corners, is skipped if it lies
 //!
-//! * beyond a side of every lit wedge: a product with a plane's normal tells, and no angle is needed. A wedge of more than half a
-//!   turn is missed by what lies beyond both of its sides;
+//! * beyond a side of every lit wedge: a product with a plane's normal tells, and no angle is needed. A wedge of more
+//!   than half a turn is missed by what lies beyond both of its sides;
 //! * above or below the cone (with several lanes, the shell between two): the space inside a cone is convex, so that a
-//!   triangle whose corners lie inside does not reach it. From outside, a plane through the apex that keeps the cone on its
-//!   other side tells: the one on the triangle's side, `z cos d < sin d (u . p)` for a unit vector u across the axis, since
-//!   `u . p` is at most p's distance from it;
+//!   triangle whose corners lie inside does not reach it. From outside, a plane through the apex that keeps the cone on
+//!   its other side tells: the one on the triangle's side, `z cos d < sin d (u . p)` for a unit vector u across the
+//!   axis, since `u . p` is at most p's distance from it;
 //! * behind the surface.
 //!
-//! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]), and corners are given as much (against the
-//! cone twice as much).
+//! Every box has been grown by more than rounding amounts to (see [`super::BOX_PADDING`]), and corners are given as
+//! much (against the cone twice as much).
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;

@@ -12,7 +12,8 @@ use crate::trace::bvh16::bits;
 use fearless_simd::Simd;
 use glam::DVec3;
 
-/// Solid spans of a mask that are shorter than this, in diamond angle, are due to rounding: a corner that is just touched.
+/// Solid spans of a mask that are shorter than this, in diamond angle, are due to rounding: a corner that is just
+/// touched.
 const LEAST_SOLID: f64 = 1e-10;
 
 /// A point, one of its sides, and the spans of the arc that are still lit there.
@@ -57,14 +58,15 @@ impl<'a> GapCloser<'a> {
         }
     }
 
-    /// Rotates the triangles of a packet into the arc's frame and closes what they occlude. True if they close anything.
+    /// Rotates the triangles of a packet into the arc's frame and closes what they occlude. True if they close
+    /// anything.
     pub fn turn_and_close<S: Simd>(&mut self, simd: S, packet: &mut Packet, query: &mut Query) -> bool {
         packet.turn(simd, &self.frame.arc_from_bake);
         self.close(simd, packet, query)
     }
 
-    /// Closes gaps with the triangles of the previous point: solid ones, then alpha-masked ones, which cost more. Returns how many
-    /// were tested.
+    /// Closes gaps with the triangles of the previous point: solid ones, then alpha-masked ones, which cost more.
+    /// Returns how many were tested.
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
         std::mem::swap(&mut self.seeds, &mut self.next_seeds);
         self.next_seeds.iter_mut().for_each(SeedPackets::clear);

@@ -1,9 +1,9 @@
 //! Following the sun across alpha masks, a few curves at a time.
 //!
-//! Each curve goes from border to border: two lie ahead, the earlier is crossed, and the texel beyond it (with the square of
-//! equal texels that lies ahead) gives the next two. Where there are two crossings at once either may come first, since the other
-//! follows in a step of no length. A step waits for the one before it, through a root and two quotients, so a few curves
-//! take turns: their steps overlap in the processor.
+//! Each curve goes from border to border: two lie ahead, the earlier is crossed, and the texel beyond it (with the
+//! square of equal texels that lies ahead) gives the next two. Where there are two crossings at once either may come
+//! first, since the other follows in a step of no length. A step waits for the one before it, through a root and two
+//! quotients, so a few curves take turns: their steps overlap in the processor.
 
 use super::alpha_mask::{Curve, MaskedTriangleView, texel_of, value};
 
@@ -183,8 +183,8 @@ impl CurveWalk {
     }
 }
 
-/// Where a coordinate next crosses the border of its square in the way that it runs: of both roots of `U - k W`, signed so
-/// that it grows, the one with a positive slope.
+/// Where a coordinate next crosses the border of its square in the way that it runs: of both roots of `U - k W`, signed
+/// so that it grows, the one with a positive slope.
 #[inline(always)]
 fn crossing(curve: &Curve, axis: usize, walk: &CurveWalk) -> f64 {
     let grows = curve.grows[axis];

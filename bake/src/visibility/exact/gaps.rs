@@ -1,11 +1,11 @@
 //! The spans of an arc that are still lit: a list of gaps that occluders close.
 
-/// Gaps narrower than this, in diamond angle, are closed: they last under a hundredth of a millisecond of a day and come
-/// of two occluders that meet without sharing an edge.
+/// Gaps narrower than this, in diamond angle, are closed: they last under a hundredth of a millisecond of a day and
+/// come of two occluders that meet without sharing an edge.
 const LEAST_GAP: f64 = 1e-10;
 
-/// Disjoint spans of diamond angle, ascending, none of them empty. The order of occluders makes no difference: gaps that become
-/// narrower than [`LEAST_GAP`] are dropped.
+/// Disjoint spans of diamond angle, ascending, none of them empty. The order of occluders makes no difference: gaps
+/// that become narrower than [`LEAST_GAP`] are dropped.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Gaps(Vec<[f64; 2]>);
 

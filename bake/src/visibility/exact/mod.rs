@@ -3,59 +3,66 @@
 //! **Theory.** Seen from one point, the suns of an arc lie on a cone about its axis, and for any vector n the product
 //! `n . dir(h)` is `A cos h + B sin h + C`, not negative on one span of hour angle whose ends are known in closed form
 //! (`arc.rs`). The horizon, the surface's plane and each edge of a triangle, joined with the point to a plane, are such
-//! spans. A triangle occludes the intersection of the spans of its three edges (`solve.rs`), and all triangles
-//! occlude the union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
+//! spans. A triangle occludes the intersection of the spans of its three edges (`solve.rs`), and all triangles occlude
+//! the union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
 //!
 //! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
 //! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then a
-//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that cannot
-//! occlude anything still lit: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`). Triangles that pass are collected and
-//! solved eight at a time in `f64`. Lanes of a disc differ by declination alone: one walk serves all, with a shell of cones
-//! for its cone. Across alpha-masked triangles the sun is followed from texel to texel (`alpha_mask.rs`, `follow.rs`). Triangles
-//! within the run-up of shadow rays are handled separately (`near.rs`). SIMD is chosen at run time and changes no bit:
-//! nothing is fused, every operation rounds alike.
+//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that
+//! cannot occlude anything still lit: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`).
+//! Triangles that pass are collected and solved eight at a time in `f64`. Lanes of a disc differ by declination alone:
+//! one walk serves all, with a shell of cones for its cone. Across alpha-masked triangles the sun is followed from
+//! texel to texel (`alpha_mask.rs`, `follow.rs`). Triangles within the run-up of shadow rays are handled separately
+//! (`near.rs`). SIMD is chosen at run time and changes no bit: nothing is fused, every operation rounds alike.
 //!
-//! **What was tried.** Ratios are of time, from scenes of 36,000 to 600,000 triangles, before and after, on shared cores.
+//! **What was tried.** Ratios are of time, from scenes of 36,000 to 600,000 triangles, before and after, on shared
+//! cores.
 //!
 //! What helped:
 //!
-//! * Eight triangles at a time in `f64`: about 140 ns for eight, by a profile, where the scalar prototype took 120 to 150 ns
-//!   for one. The two ends of a span by one division, and no division for corners: 0.93 without foliage, nothing with it.
+//! * Eight triangles at a time in `f64`: about 140 ns for eight, by a profile, where the scalar prototype took 120 to
+//!   150 ns for one. The two ends of a span by one division, and no division for corners: 0.93 without foliage, nothing
+//!   with it.
 //! * The last point's occluders first, copied as they are found: a third fewer triangles than a list that ages.
 //! * Squares of equal texels crossed in one step: 0.6 where there is foliage.
 //! * Sixteen boxes a node instead of eight: 0.8 to 0.9, on an open city 1.05.
-//! * Corners of leaves instead of a box for each triangle, and wedges and cone by products with planes (tried together): up to
-//!   a third fewer triangles solved, 0.9 to 1.
-//! * Triangles turned into the arc's frame eight at a time, and most spans in one piece: 0.9 without foliage, nothing with it.
-//! * No closures mapped over arrays within SIMD code, since they are not always inlined: 0.7 to 0.9, the largest gain of all.
-//! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is foliage;
-//!   four curves that take turns instead of one after the other, 0.85 more.
+//! * Corners of leaves instead of a box for each triangle, and wedges and cone by products with planes (tried
+//!   together): up to a third fewer triangles solved, 0.9 to 1.
+//! * Triangles turned into the arc's frame eight at a time, and most spans in one piece: 0.9 without foliage, nothing
+//!   with it.
+//! * No closures mapped over arrays within SIMD code, since they are not always inlined: 0.7 to 0.9, the largest gain
+//!   of all.
+//! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is
+//!   foliage; four curves that take turns instead of one after the other, 0.85 more.
 //! * The largest square of equal texels that lies ahead, not around: 0.9 where there is foliage.
 //! * Alpha-masked triangles solved after solid ones, and packets not copied: 0.9 in shade.
 //!
 //! What did not:
 //!
-//! * One list of candidates for a block of 16 or 64 points. With triangles on it, gathered where a few scouts saw light and
-//!   the rest presumed dark and checked: **lost**, 1 to 1.5. Near surfaces are seen from a block under all angles at once, so
-//!   lists hold hundreds of triangles just where scenes are dense. With nodes and leaves on it, of what any point of the block
-//!   has left after its seeds, opened down to the size of the block: **nothing**, 0.98 to 1.1, since sixteen boxes take 25 ns
-//!   and what they save is spent on gathering, and seeds that stay the same for a block close less.
-//! * Alpha-masked triangles followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another, so each
-//!   that is followed spares others.
-//! * Eight curves by SIMD: nothing over four in turns. Three of eight lanes were busy on average, and the look-up between
-//!   two steps is scalar.
-//! * Leaves of eight triangles instead of sixteen, and testing the boxes of a leaf's triangles before all are solved: nothing.
+//! * One list of candidates for a block of 16 or 64 points. With triangles on it, gathered where a few scouts saw light
+//!   and the rest presumed dark and checked: **lost**, 1 to 1.5. Near surfaces are seen from a block under all angles
+//!   at once, so lists hold hundreds of triangles just where scenes are dense. With nodes and leaves on it, of what any
+//!   point of the block has left after its seeds, opened down to the size of the block: **nothing**, 0.98 to 1.1, since
+//!   sixteen boxes take 25 ns and what they save is spent on gathering, and seeds that stay the same for a block close
+//!   less.
+//! * Alpha-masked triangles followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another,
+//!   so each that is followed spares others.
+//! * Eight curves by SIMD: nothing over four in turns. Three of eight lanes were busy on average, and the look-up
+//!   between two steps is scalar.
+//! * Leaves of eight triangles instead of sixteen, and testing the boxes of a leaf's triangles before all are solved:
+//!   nothing.
 //! * Corners in the tracer's axes, turned as they are tested, to spare a second copy: **lost**, 1.05.
 //! * Boxes in 8 bits, two cache lines a node instead of four: nothing.
 //! * All of a point's work as one function compiled for the widest SIMD: nothing.
-//! * Gaps on the heap, made anew for each point (they are kept from one to the next now): half of all time went to allocation.
+//! * Gaps on the heap, made anew for each point (they are kept from one to the next now): half of all time went to
+//!   allocation.
 //!
-//! **What is left**, on our own scene: by a profile, a quarter to a third follows alpha masks (square by square, each with
-//! a branch that nothing predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a tenth collects triangles. Two thirds of
-//! the triangles solved in a walk cross the cone but hide nothing that is still lit: a test of the edges in `f32` would tell.
-//! Not tried: the triangles across the edges of those that bound a gap before the hierarchy is asked (most walks in shade
-//! close a slit that has opened between two points); what a large occluder hides from a whole block; leaf cards cut to their
-//! outlines when they are loaded.
+//! **What is left**, on our own scene: by a profile, a quarter to a third follows alpha masks (square by square, each
+//! with a branch that nothing predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a
+//! tenth collects triangles. Two thirds of the triangles solved in a walk cross the cone but hide nothing that is still
+//! lit: a test of the edges in `f32` would tell. Not tried: the triangles across the edges of those that bound a gap
+//! before the hierarchy is asked (most walks in shade close a slit that has opened between two points); what a large
+//! occluder hides from a whole block; leaf cards cut to their outlines when they are loaded.
 
 mod alpha_mask;
 mod arc;
@@ -220,7 +227,9 @@ mod tests {
             SceneBuilder::new().soup(&floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0)).soup(&stone).soup(&post).build();
         let geometry = Geometry::new(&scene);
         let tracer = Tracer::new(&scene, &geometry);
-        let keys = r#"{ "keys": [{ "direction": [1, 0.1, 0.2] }, { "direction": [0, 1, 0.5] }, { "direction": [-1, 0.1, 0] }] }"#;
+        let keys = r#"{ "keys": [
+            { "direction": [1, 0.1, 0.2] }, { "direction": [0, 1, 0.5] }, { "direction": [-1, 0.1, 0] }
+        ] }"#;
         let path = crate::sun::parse_keyed(keys, 0.0).expect("a path");
         let lanes = [-0.01, 0.0, 0.01].map(|offset_rad| path.lane(offset_rad));
         let engine = ExactEngine { level: level(), ..ExactEngine::new(&tracer, &lanes) };

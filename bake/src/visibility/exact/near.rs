@@ -1,9 +1,10 @@
 //! What a triangle occludes whose plane is within the run-up of the point.
 //!
-//! Shadow rays start a run-up r before their point (see [`crate::trace`]), so a triangle counts if the sun's line crosses
-//! it beyond -r. With N the sum of the edge normals and V the volume `v0 . (v1 x v2)`, the line along `dir` crosses the
-//! plane at `V / (N . dir)`. For either orientation s = ±1 the triangle hides where all `s n_i . dir >= 0` and
-//! `s N . dir + s V / r >= 0`: four half spaces, one of them moved. Farther triangles meet the last one always or never.
+//! Shadow rays start a run-up r before their point (see [`crate::trace`]), so a triangle counts if the sun's line
+//! crosses it beyond -r. With N the sum of the edge normals and V the volume `v0 . (v1 x v2)`, the line along `dir`
+//! crosses the plane at `V / (N . dir)`. For either orientation s = ±1 the triangle hides where all `s n_i . dir >= 0`
+//! and `s N . dir + s V / r >= 0`: four half spaces, one of them moved. Farther triangles meet the last one always or
+//! never.
 
 use super::arc::ArcFrame;
 use glam::DVec3;

@@ -14,7 +14,8 @@ pub(super) struct SeedPackets {
 }
 
 impl SeedPackets {
-    /// Adds a triangle, given by its corners in the arc's frame; beyond [`MOST_PACKETS`] packets, triangles are dropped.
+    /// Adds a triangle, given by its corners in the arc's frame; beyond [`MOST_PACKETS`] packets, triangles are
+    /// dropped.
     pub fn add(&mut self, id: u32, corners: [DVec3; 3]) {
         let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == LANES);
         if is_full && self.count == MOST_PACKETS {

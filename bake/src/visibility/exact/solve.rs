@@ -1,16 +1,16 @@
 //! Which part of an arc each of eight triangles occludes at a point, in `f64` and in closed form.
 //!
-//! Theory: with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle
-//! hides where all three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in
-//! closed form; their intersection is what the triangle hides.
+//! Theory: with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle hides where all
+//! three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in closed
+//! form; their intersection is what the triangle hides.
 //!
-//! Watertight: `a x b` and `b x a` are exact opposites in floating point, and every step from there to the ends of a span
-//! treats opposites alike. So the triangles on both sides of an edge end at the same number, and no gap is left.
-//! That holds because corners are turned into the arc's frame by one sequence of operations wherever they are, and because
-//! nothing is fused: additions and products round the same at every level of SIMD.
+//! Watertight: `a x b` and `b x a` are exact opposites in floating point, and every step from there to the ends of a
+//! span treats opposites alike. So the triangles on both sides of an edge end at the same number, and no gap is left.
+//! That holds because corners are turned into the arc's frame by one sequence of operations wherever they are, and
+//! because nothing is fused: additions and products round the same at every level of SIMD.
 //!
-//! Triangles whose plane is within the run-up of shadow rays are handled in `near.rs`, alpha-masked ones in `alpha_mask.rs`: both are
-//! told apart here.
+//! Triangles whose plane is within the run-up of shadow rays are handled in `near.rs`, alpha-masked ones in
+//! `alpha_mask.rs`: both are told apart here.
 
 use super::arc::Declination;
 use super::gaps::Gaps;
@@ -150,8 +150,8 @@ fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
     }
 }
 
-/// What eight triangles occlude at a point at some declinations, as far as it meets the gaps. Returns a bit set of the triangles
-/// whose plane is within the run-up (given squared); for these the rest of the answer is not valid.
+/// What eight triangles occlude at a point at some declinations, as far as it meets the gaps. Returns a bit set of the
+/// triangles whose plane is within the run-up (given squared); for these the rest of the answer is not valid.
 pub(super) fn hide<S: Simd>(
     simd: S,
     corners: &CornerLanes,

@@ -1,11 +1,12 @@
 //! Which part of an occluded span an alpha-masked triangle really occludes.
 //!
-//! While the lamp moves along its segment, the point where its ray pierces the triangle moves along a straight line of the
-//! triangle's plane, and the texture coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the products of
-//! the edge normals with the lamp: all linear in s. A border between two columns of texels, `u = k / width`, is crossed
-//! where `sum(w_i (u_i width - k)) = 0`, a linear condition. So the line is followed from texel to texel, and no texel is
-//! skipped except those that are crossed in less than [`LEAST_STEP`]. Squares of texels that are solid or clear throughout are
-//! crossed in one step. In a texel where the corners' own alphas matter, alpha passes the cutoff at one root more.
+//! While the lamp moves along its segment, the point where its ray pierces the triangle moves along a straight line of
+//! the triangle's plane, and the texture coordinate there is `sum(w_i uv_i) / sum(w_i)`, the weights w_i being the
+//! products of the edge normals with the lamp: all linear in s. A border between two columns of texels,
+//! `u = k / width`, is crossed where `sum(w_i (u_i width - k)) = 0`, a linear condition. So the line is followed from
+//! texel to texel, and no texel is skipped except those that are crossed in less than [`LEAST_STEP`]. Squares of texels
+//! that are solid or clear throughout are crossed in one step. In a texel where the corners' own alphas matter, alpha
+//! passes the cutoff at one root more.
 //!
 //! The sun's version, along a curve, is `exact/alpha_mask.rs`.
 

@@ -1,13 +1,14 @@
 //! Lit intervals of a lamp that moves through the scene.
 //!
-//! From a point, all rays to the lamp on one straight segment of its path lie in one triangle. One walk of the hierarchy
-//! against that triangle (`walk.rs`) finds every occluder of the segment, and each occludes a span of it in closed form, which may
-//! end where the lamp passes through the occluder's plane (`hide.rs`); alpha masks are followed texel by texel (`alpha_mask.rs`). The
-//! walk skips boxes that can occlude only what is occluded already, and stops when nothing is open (`open.rs`). The occluders of the
-//! previous point are tested first (`seeds.rs`).
+//! From a point, all rays to the lamp on one straight segment of its path lie in one triangle. One walk of the
+//! hierarchy against that triangle (`walk.rs`) finds every occluder of the segment, and each occludes a span of it in
+//! closed form, which may end where the lamp passes through the occluder's plane (`hide.rs`); alpha masks are followed
+//! texel by texel (`alpha_mask.rs`). The walk skips boxes that can occlude only what is occluded already, and stops
+//! when nothing is open (`open.rs`). The occluders of the previous point are tested first (`seeds.rs`).
 //!
-//! A lamp has no horizon. The condition that it is in front of the surface's plane is linear in s, too. For a double-sided surface,
-//! rays start on the side that faces the lamp. [`LampRays`] traces rays to evenly spaced positions of the lamp, for comparison.
+//! A lamp has no horizon. The condition that it is in front of the surface's plane is linear in s, too. For a
+//! double-sided surface, rays start on the side that faces the lamp. [`LampRays`] traces rays to evenly spaced
+//! positions of the lamp, for comparison.
 
 mod alpha_mask;
 mod hide;

@@ -1,8 +1,8 @@
 //! N rays a point to N positions of a lamp: a baseline for the closed form, as `visibility/rays.rs` is for the sun.
 //!
-//! The path is cut into N equal steps of time, and a ray is traced to the lamp's place at the middle of each; the step is
-//! lit or dark as its ray is. Edges are off by half a step at most, and what is thinner than a step may be missed. The
-//! occluder of the previous position and the last occluder of this one are tested before the hierarchy is walked.
+//! The path is cut into N equal steps of time, and a ray is traced to the lamp's place at the middle of each; the step
+//! is lit or dark as its ray is. Edges are off by half a step at most, and what is thinner than a step may be missed.
+//! The occluder of the previous position and the last occluder of this one are tested before the hierarchy is walked.
 
 use super::super::probe::side_towards;
 use super::{Engine, IntervalTable, Intervals, Session, Work};

@@ -29,8 +29,8 @@ impl SeedTriangles {
         self.triangles.push((triangle, self.now));
     }
 
-    /// Calls `close` for each triangle until nothing is left to close. It returns whether the triangle closed anything, and whether
-    /// nothing is left. Returns how many triangles were tested.
+    /// Calls `close` for each triangle until nothing is left to close. It returns whether the triangle closed anything,
+    /// and whether nothing is left. Returns how many triangles were tested.
     pub fn try_all(&mut self, mut close: impl FnMut(u32) -> (bool, bool)) -> u64 {
         let mut tried = 0;
         for (triangle, last_use) in &mut self.triangles {

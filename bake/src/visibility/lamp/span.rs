@@ -1,7 +1,7 @@
 //! Where linear conditions hold along a segment, `s` running over [0, 1].
 //!
-//! A condition is given by its values at both ends. Opposite values give the same root, bit for bit, so that what ends at
-//! an edge for one triangle starts there for its neighbour.
+//! A condition is given by its values at both ends. Opposite values give the same root, bit for bit, so that what ends
+//! at an edge for one triangle starts there for its neighbour.
 
 /// A part of a segment.
 pub(super) type Span = [f64; 2];

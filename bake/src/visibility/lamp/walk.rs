@@ -1,9 +1,9 @@
 //! The hierarchy against the triangle that a point and a segment span: all rays to the lamp lie in its plane.
 //!
-//! A box is entered only if it meets the triangle's own box and plane, if it does not lie beyond the segment, and if rays
-//! to a part of it that is still open may meet it: with n the triangle's normal, what is pierced later than s has a
-//! product with `n x l(s)` that is not negative. All are bounds of linear functions over a box. Boxes are grown by far
-//! more than rounding amounts to, and by the run-up of shadow rays.
+//! A box is entered only if it meets the triangle's own box and plane, if it does not lie beyond the segment, and if
+//! rays to a part of it that is still open may meet it: with n the triangle's normal, what is pierced later than s has
+//! a product with `n x l(s)` that is not negative. All are bounds of linear functions over a box. Boxes are grown by
+//! far more than rounding amounts to, and by the run-up of shadow rays.
 //!
 //! Where point and segment are in one line there is no plane, and the triangle's box alone decides.
 
