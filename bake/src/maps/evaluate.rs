@@ -1,5 +1,5 @@
 //! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in
-//! `shaders/src/wgsl`, with the same names in the same order.
+//! `shaders/src/wgsl/baked`, with the same names in the same order.
 //!
 //! While the sun's disc crosses a shadow's edge it is approximated by a line along its path (the chapter's linear
 //! light): `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`, w being the sun's width in t.
