@@ -130,7 +130,7 @@ pub enum Warning {
     },
     /// Rays ran out before the error was small enough.
     #[error("{texels} texels may still be off by more than {error} after {rays} rays of sky")]
-    AmbientUnsettled {
+    AmbientUnconverged {
         /// How many texels.
         texels: u64,
         /// Error of ambient occlusion asked for.
@@ -171,8 +171,8 @@ impl Warning {
             Self::Merged { needed_layers, .. } => {
                 Some(Remedy::Set(Setting::Layers, needed_layers.min(&MOST_LAYERS).to_string()))
             }
-            Self::AmbientUnsettled { rays, .. } if *rays >= MOST_RAYS => Some(Remedy::Raise(Setting::AoError)),
-            Self::AmbientUnsettled { .. } => {
+            Self::AmbientUnconverged { rays, .. } if *rays >= MOST_RAYS => Some(Remedy::Raise(Setting::AoError)),
+            Self::AmbientUnconverged { .. } => {
                 Some(Remedy::AnyOf([Setting::AoRays, Setting::AoError].map(Remedy::Raise).into()))
             }
             Self::FewerPoints { .. } => Some(Remedy::Lower(Setting::PageSize)),

@@ -141,13 +141,13 @@ impl FinerSamples {
 
 /// Warnings about ambient light.
 pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Warning> {
-    let unsettled = (entry.unsettled_texels > 0).then(|| Warning::AmbientUnsettled {
+    let unconverged = (entry.unsettled_texels > 0).then(|| Warning::AmbientUnconverged {
         texels: entry.unsettled_texels,
         error: request.estimate.error.unwrap_or_default(),
         rays: request.estimate.rays,
     });
     let (asked, used) = (request.supersample, entry.supersample);
-    unsettled.into_iter().chain((used < asked).then_some(Warning::FewerPoints { asked, used })).collect()
+    unconverged.into_iter().chain((used < asked).then_some(Warning::FewerPoints { asked, used })).collect()
 }
 
 /// The manifest's entry.
