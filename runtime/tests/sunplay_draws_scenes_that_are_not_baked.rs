@@ -41,7 +41,7 @@ fn volumes_and_truth_draw_one_mask_and_the_plan_is_printed() {
         assert_eq!(report["technique"], technique);
         assert_eq!(report["clock"], "17:00");
         let is_live = technique != "truth:hard";
-        assert_eq!(stderr(&output).contains("their whole cards cast"), is_live, "{}", stderr(&output));
+        assert_eq!(stderr(&output).contains("the whole triangles cast"), is_live, "{}", stderr(&output));
         assert!(report["effects"].as_array().is_some_and(|effects| effects.len() > 2), "{technique}");
         assert!(
             stderr(&output).contains("  on  alpha-test") && stderr(&output).contains("      off by"),
