@@ -55,7 +55,7 @@ pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) 
         VolumeLight::Sun => text.push_str(wgsl!("volumes/corner_sun")),
         VolumeLight::Lamp => text.push_str(&[wgsl!("lamp/lamp"), wgsl!("volumes/corner_lamp")].concat()),
         VolumeLight::LampWithRange => {
-            text.push_str(&[wgsl!("lamp/lamp"), wgsl!("volumes/corner_lamp_finite")].concat())
+            text.push_str(&[wgsl!("lamp/lamp"), wgsl!("volumes/corner_lamp_finite")].concat());
         }
     }
     match (corners, light) {

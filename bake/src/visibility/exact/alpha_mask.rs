@@ -23,9 +23,9 @@ pub(super) struct MaskedTriangleView<'a> {
     /// Which triangle of a packet it is, and along which lane it is seen.
     pub slot: usize,
     pub lane: usize,
-    /// For each corner, the normal of the opposite edge with the declination worked in: its product with (cos h, sin h,
-    /// 1) is the corner's weight. Where the triangle is pierced all have one sign, the positive one after
-    /// [`MaskedTriangleView::side`].
+    /// For each corner, the normal of the opposite edge with the declination worked in: its product with
+    /// (cos h, sin h, 1) is the corner's weight. Where the triangle is pierced all have one sign, the positive one
+    /// after [`MaskedTriangleView::side`].
     weights: [DVec3; 3],
     /// The weights' sums, weighted by each texture coordinate, and their plain sum.
     sums: [DVec3; 3],
