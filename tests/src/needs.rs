@@ -31,7 +31,7 @@ impl Need {
     /// A browser. With `SUNBAKE_REQUIRE_TOOLS=1`, a test without it fails.
     pub fn browser() -> Self {
         let names = crate::browser::names();
-        Self::tool(names.iter().any(|name| answers(name)), format!("none of {names:?} is installed"))
+        Self::tool(names.iter().any(|name| answers(name)), &format!("none of {names:?} is installed"))
     }
 
     /// The Khronos glTF validator, with the `node` that runs it. With `SUNBAKE_REQUIRE_TOOLS=1`, a test without it
@@ -39,10 +39,10 @@ impl Need {
     pub fn validator() -> Self {
         let package = validator_folder().join("node_modules/gltf-validator");
         let is_there = package.is_dir() && answers("node".as_ref());
-        Self::tool(is_there, format!("node, or {}, is not installed", package.display()))
+        Self::tool(is_there, &format!("node, or {}, is not installed", package.display()))
     }
 
-    fn tool(is_there: bool, absent: String) -> Self {
+    fn tool(is_there: bool, absent: &str) -> Self {
         let advice = format!("{absent}: tests/setup installs it where it can");
         Self { is_there, is_required: is_set("SUNBAKE_REQUIRE_TOOLS"), advice }
     }

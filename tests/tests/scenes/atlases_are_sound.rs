@@ -57,13 +57,16 @@ const SHARED: [(&str, u32); 9] = [
     ("box_textured/BoxTextured.glb", 128),
 ];
 
+/// A claim, the scene that it is made of, and the check.
+type NamedCheck = (&'static str, &'static str, fn(&Path));
+
 pub fn trials() -> Vec<Trial> {
     let every = |(scene, page)| {
         of_scene("every_triangle_has_texels_of_its_own", scene, move |file| {
             every_triangle_has_texels_of_its_own(file, page);
         })
     };
-    let others: [(&str, &str, fn(&Path)); 3] = [
+    let others: [NamedCheck; 3] = [
         (
             "valid_coordinates_of_the_file_are_kept",
             "box_textured/CornellBox.glb",

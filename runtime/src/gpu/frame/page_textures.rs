@@ -90,6 +90,9 @@ fn bound(gpu: &Gpu, textures: &[(u32, wgpu::Texture)]) -> Option<(wgpu::BindGrou
     Some((layout, group))
 }
 
+/// The codes of a layer's rise or fall times, a texel each.
+type CodesOf = fn(&LayerMaps) -> &[[u16; 4]];
+
 /// Rise and fall times of these layers.
 fn times(gpu: &Gpu, maps: &PageMaps, bits: Bits, layers: &[&LayerMaps]) -> Result<[wgpu::Texture; 2], GpuError> {
     let limit = u64::from(gpu.device.limits().max_texture_array_layers);
@@ -98,7 +101,7 @@ fn times(gpu: &Gpu, maps: &PageMaps, bits: Bits, layers: &[&LayerMaps]) -> Resul
         Bits::Eight => wgpu::TextureFormat::Rgba8Uint,
         Bits::Sixteen => wgpu::TextureFormat::Rgba16Uint,
     };
-    let codes_of: [fn(&LayerMaps) -> &[[u16; 4]]; 2] = [|layer| &layer.rise, |layer| &layer.fall];
+    let codes_of: [CodesOf; 2] = [|layer| &layer.rise, |layer| &layer.fall];
     Ok(codes_of.map(|codes_of| {
         let size = [maps.width, maps.height];
         let texture = texture(gpu, "times", size, layers.len() as u32, format, FILLED_AND_READ);
