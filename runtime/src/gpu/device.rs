@@ -14,59 +14,59 @@ pub struct Gpu {
     pub is_software: bool,
 }
 
-/// What a GPU could not do.
+/// Why the GPU could not draw.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
-    /// There is none.
+    /// No adapter was found.
     #[error("no GPU adapter found ({reason})")]
     NoAdapter {
-        /// What was tried.
+        /// wgpu's reason.
         reason: String,
     },
-    /// There is one, and it does not open.
+    /// An adapter was found, but gave no device.
     #[error("the GPU {name} does not open: {reason}")]
     NoDevice {
-        /// Which.
+        /// The adapter's name.
         name: String,
-        /// What it says.
+        /// wgpu's reason.
         reason: String,
     },
-    /// The set does not fit the adapter.
+    /// Something exceeds a limit of the device.
     #[error("{what} is {needed}; this GPU takes {limit}")]
     Limit {
-        /// What does not fit.
+        /// What exceeds it, with its unit.
         what: String,
-        /// Its measure.
+        /// How much is needed.
         needed: u64,
-        /// The adapter's.
+        /// The device's limit.
         limit: u64,
     },
-    /// Shadow maps do not fit.
+    /// Shadow maps exceed the device's limits or memory.
     #[error("shadow maps of {mebibytes} MiB do not fit this GPU")]
     MapMemory {
-        /// What they would take.
+        /// Their size, MiB.
         mebibytes: u64,
     },
-    /// A picture does not fit.
+    /// A picture of this size could not be made.
     #[error("the GPU failed making a picture of this size: {reason}")]
     Picture {
-        /// What it says.
+        /// wgpu's reason.
         reason: String,
     },
-    /// It lacks what a technique is made of.
+    /// The device lacks a feature that the technique needs.
     #[error("this GPU cannot {what} ({feature})")]
     Lacks {
-        /// What it cannot do.
+        /// What cannot be done without it.
         what: &'static str,
-        /// The missing feature's name.
+        /// The feature's name in wgpu.
         feature: &'static str,
     },
-    /// It failed while working.
+    /// A validation error, or no memory left.
     #[error("the GPU failed {doing}: {reason}")]
     Failed {
-        /// At what.
+        /// During what.
         doing: &'static str,
-        /// What it says.
+        /// wgpu's reason.
         reason: String,
     },
 }

@@ -2,7 +2,7 @@
 
 /// An effect of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Effect {
+pub enum DrawEffect {
     /// A pass that draws depths first, so that each pixel is lit once.
     DepthPass,
     /// A pass that lights surfaces, or shows how much light they see.

@@ -9,23 +9,23 @@
 //! What an effect takes is what leaving it out would save. Two effects that need the same pipeline each save nothing
 //! alone.
 //!
-//! Decisions are values ([`Effect`], [`Reason`], [`Census`]); `wording.rs` holds every text.
+//! Decisions are values ([`DrawEffect`], [`Reason`], [`Census`]); `wording.rs` holds every text.
 
 mod census;
 mod effect;
 mod wording;
 
 pub use census::Census;
-pub use effect::{Effect, Reason, Uncounted};
+pub use effect::{DrawEffect, Reason, Uncounted};
 
 use sunbake::disk::manifest::EffectEntry;
 use sunbake::plan::{in_words, labelled};
 
 /// The decision about one effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Need {
+pub struct DrawNeed {
     /// Which effect.
-    pub effect: Effect,
+    pub effect: DrawEffect,
     /// Whether it is part of the picture.
     pub is_on: bool,
     /// Why it is on or off.
@@ -36,9 +36,9 @@ pub struct Need {
     pub uncounted: Uncounted,
 }
 
-impl Need {
+impl DrawNeed {
     /// An effect that is on and saves this much when left out, or one that is off.
-    pub fn new(effect: Effect, saved: Option<Census>, reason: Reason) -> Self {
+    pub fn new(effect: DrawEffect, saved: Option<Census>, reason: Reason) -> Self {
         let takes = saved.unwrap_or_default();
         Self { effect, is_on: saved.is_some(), reason, takes, uncounted: Uncounted::Nothing }
     }
@@ -68,7 +68,7 @@ impl Need {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct DrawPlan {
     /// One entry per effect.
-    pub needs: Vec<Need>,
+    pub needs: Vec<DrawNeed>,
     /// What is built for all of them.
     pub totals: Census,
     /// Whether `totals` is what a picture takes; else it is an upper bound.
@@ -77,7 +77,7 @@ pub struct DrawPlan {
 
 impl DrawPlan {
     /// The decision about an effect, by its name, if the plan has it.
-    pub fn need(&self, effect: &str) -> Option<&Need> {
+    pub fn need(&self, effect: &str) -> Option<&DrawNeed> {
         self.needs.iter().find(|need| need.effect.name() == effect)
     }
 
@@ -88,7 +88,7 @@ impl DrawPlan {
 
     /// For machines: the entries that a manifest has for a bake.
     pub fn entries(&self) -> Vec<EffectEntry> {
-        let entry = |need: &Need| EffectEntry {
+        let entry = |need: &DrawNeed| EffectEntry {
             effect: need.effect.name().into(),
             on: need.is_on,
             why: need.why(),

@@ -6,8 +6,8 @@ pub use plan::baked_plan;
 
 use super::device::{Gpu, GpuError};
 use super::frame::{
-    Batch, BatchKey, Canvas, DEPTH_FORMAT, FrameTimes, Output, PassClock, PictureTarget, Program, ProgramTable,
-    SceneOnGpu, Targets, readback, sky_program, surface_stages, surface_state, with_pipelines,
+    Batch, BatchKey, DEPTH_FORMAT, FrameTarget, FrameTimes, Output, OwnTargets, PassClock, PictureTarget, Program,
+    ProgramTable, SceneOnGpu, readback, sky_program, surface_stages, surface_state, with_pipelines,
 };
 use crate::light::Moment;
 use crate::plan::{Census, DrawPlan};
@@ -22,7 +22,7 @@ pub struct BakedRenderer<'g> {
     filter: Filter,
     scene: SceneOnGpu,
     programs: ProgramTable<BakedProgram>,
-    targets: Targets,
+    targets: OwnTargets,
     clock: PassClock,
     times: Option<FrameTimes>,
 }
@@ -36,7 +36,7 @@ impl<'g> BakedRenderer<'g> {
             filter,
             scene,
             programs: ProgramTable::default(),
-            targets: Targets::new(DEPTH_FORMAT),
+            targets: OwnTargets::new(DEPTH_FORMAT),
             clock: PassClock::new(gpu, false),
             times: None,
         })
@@ -70,15 +70,15 @@ impl<'g> BakedRenderer<'g> {
         gpu.checked("building pipelines", || self.prepare(output, target.format))?;
         self.scene.frame.write(gpu, encoder, view, moment);
         self.clock.start();
-        let canvas = Canvas { output, picture: target, depth, clock: &self.clock };
+        let into = FrameTarget { output, picture: target, depth, clock: &self.clock };
         let program = |key: &BakedProgram| self.programs.get(key, target.format);
-        canvas.depth_pass(encoder, &self.scene, |key| program(&BakedProgram::Depth(*key)));
+        into.depth_pass(encoder, &self.scene, |key| program(&BakedProgram::Depth(*key)));
         let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
             let key = BakedProgram::Surface(output, self.scene.surface_key(&batch.key));
             self.scene.draw_surface(pass, batch, program(&key));
         };
         let sky = (output == Output::Lit).then(|| program(&BakedProgram::Sky));
-        canvas.surface_pass(encoder, &self.scene, draw, sky);
+        into.surface_pass(encoder, &self.scene, draw, sky);
         Ok(())
     }
 

@@ -6,7 +6,7 @@ use super::target::{DepthBuffer, PictureTarget};
 use super::{Batch, BatchKey, Output, SceneOnGpu, depth_key};
 
 /// What the passes of a frame draw into, and what counts and times them.
-pub struct Canvas<'a> {
+pub struct FrameTarget<'a> {
     /// What it shows.
     pub output: Output,
     /// The picture.
@@ -17,7 +17,7 @@ pub struct Canvas<'a> {
     pub clock: &'a PassClock,
 }
 
-impl Canvas<'_> {
+impl FrameTarget<'_> {
     /// Finds the nearest surfaces. A stencil is cleared on the way.
     pub fn depth_pass<'p>(
         &self,

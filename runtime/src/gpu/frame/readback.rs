@@ -1,6 +1,6 @@
 //! Reads pictures back from the GPU. Rows are copied at multiples of 256 bytes, and the padding is dropped.
 
-use super::target::{DepthBuffer, Picture};
+use super::target::{DepthBuffer, OwnPicture};
 use crate::gpu::device::{Gpu, GpuError};
 use glam::Vec3;
 
@@ -10,7 +10,12 @@ pub fn colors(floats: &[f32]) -> Vec<Vec3> {
 }
 
 /// The picture's floats, `channels` a pixel, in row order, once the encoder's commands have run.
-pub fn read(gpu: &Gpu, picture: &Picture, channels: u32, encoder: wgpu::CommandEncoder) -> Result<Vec<f32>, GpuError> {
+pub fn read(
+    gpu: &Gpu,
+    picture: &OwnPicture,
+    channels: u32,
+    encoder: wgpu::CommandEncoder,
+) -> Result<Vec<f32>, GpuError> {
     floats(gpu, picture.texture.as_image_copy(), picture.size, channels, encoder)
 }
 

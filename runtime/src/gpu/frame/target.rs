@@ -32,14 +32,14 @@ impl<'a> PictureTarget<'a> {
 
 /// A picture that can be read back.
 #[derive(Clone)]
-pub struct Picture {
+pub struct OwnPicture {
     /// In pixels.
     pub size: [u32; 2],
     pub texture: wgpu::Texture,
     pub view: wgpu::TextureView,
 }
 
-impl Picture {
+impl OwnPicture {
     /// To draw into.
     pub fn target(&self) -> PictureTarget<'_> {
         PictureTarget { view: &self.view, format: self.texture.format() }
@@ -84,25 +84,25 @@ impl DepthBuffer {
 }
 
 /// A renderer's own textures, one picture and one depth buffer per output.
-pub struct Targets {
+pub struct OwnTargets {
     depth_format: wgpu::TextureFormat,
-    pictures: BTreeMap<Output, Picture>,
+    pictures: BTreeMap<Output, OwnPicture>,
     depths: BTreeMap<Output, DepthBuffer>,
 }
 
-impl Targets {
+impl OwnTargets {
     /// None yet.
     pub fn new(depth_format: wgpu::TextureFormat) -> Self {
         Self { depth_format, pictures: BTreeMap::new(), depths: BTreeMap::new() }
     }
 
     /// The output's picture of a size.
-    pub fn picture(&mut self, gpu: &Gpu, output: Output, size: [u32; 2]) -> Result<Picture, GpuError> {
+    pub fn picture(&mut self, gpu: &Gpu, output: Output, size: [u32; 2]) -> Result<OwnPicture, GpuError> {
         if let Some(picture) = self.pictures.get(&output).filter(|picture| picture.size == size) {
             return Ok(picture.clone());
         }
         let (texture, view) = make(gpu, "picture", size, output.readback_format())?;
-        let picture = Picture { size, texture, view };
+        let picture = OwnPicture { size, texture, view };
         self.pictures.insert(output, picture.clone());
         Ok(picture)
     }

@@ -2,13 +2,13 @@
 
 use super::SceneNeeds;
 use crate::gpu::frame::{BatchKey, Output, depth_key};
-use crate::plan::{Census, Effect, Need, Reason};
+use crate::plan::{Census, DrawEffect, DrawNeed, Reason};
 use crate::stage::Stage;
 use std::collections::BTreeSet;
 use sunbake_shaders::{AmbientModel, LaneVariant, PageVariant, SurfaceVariant};
 
 /// Decisions where only the maps take anything, and their bytes: for pictures that the CPU draws.
-pub fn of_maps_alone(stage: &Stage) -> (Vec<Need>, u64) {
+pub fn of_maps_alone(stage: &Stage) -> (Vec<DrawNeed>, u64) {
     let scene = SceneNeeds::new(stage, None);
     let totals = |scene: &SceneNeeds| Census { map_bytes: scene.census().map_bytes, ..Census::default() };
     (SceneEffects { scene: &scene, totals: &totals }.all(), totals(&scene).map_bytes)
@@ -24,7 +24,7 @@ pub struct SceneEffects<'a> {
 
 impl SceneEffects<'_> {
     /// All of them.
-    pub fn all(&self) -> Vec<Need> {
+    pub fn all(&self) -> Vec<DrawNeed> {
         let surfaces = [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided()];
         surfaces.into_iter().chain(self.of_times()).chain(self.of_ambient()).chain([self.pages()]).collect()
     }
@@ -37,39 +37,39 @@ impl SceneEffects<'_> {
     }
 
     /// An effect that is on where something is counted; `strip` takes it from a surface.
-    fn of_surfaces(&self, effect: Effect, count: usize, strip: impl Fn(&BatchKey) -> BatchKey) -> Need {
+    fn of_surfaces(&self, effect: DrawEffect, count: usize, strip: impl Fn(&BatchKey) -> BatchKey) -> DrawNeed {
         let saved = (count > 0).then(|| self.saved_by(|scene| change_keys(scene, &strip)));
-        Need::new(effect, saved, Reason::Count(count))
+        DrawNeed::new(effect, saved, Reason::Count(count))
     }
 
-    fn textures(&self) -> Need {
+    fn textures(&self) -> DrawNeed {
         let count = self.scene.census().base_color_textures;
-        self.of_surfaces(Effect::BaseColorTextures, count, |key| BatchKey {
+        self.of_surfaces(DrawEffect::BaseColorTextures, count, |key| BatchKey {
             surface: SurfaceVariant { is_textured: false, ..key.surface },
             texture: None,
             ..*key
         })
     }
 
-    fn vertex_colors(&self) -> Need {
+    fn vertex_colors(&self) -> DrawNeed {
         let count = self.scene.surfaces().filter(|key| key.surface.has_vertex_color).count();
-        self.of_surfaces(Effect::VertexColors, count, |key| BatchKey {
+        self.of_surfaces(DrawEffect::VertexColors, count, |key| BatchKey {
             surface: SurfaceVariant { has_vertex_color: false, ..key.surface },
             ..*key
         })
     }
 
-    fn alpha_test(&self) -> Need {
+    fn alpha_test(&self) -> DrawNeed {
         let count = self.scene.surfaces().filter(|key| key.surface.has_alpha_mask).count();
-        self.of_surfaces(Effect::AlphaTest, count, |key| BatchKey {
+        self.of_surfaces(DrawEffect::AlphaTest, count, |key| BatchKey {
             surface: SurfaceVariant { has_alpha_mask: false, ..key.surface },
             ..*key
         })
     }
 
-    fn two_sided(&self) -> Need {
+    fn two_sided(&self) -> DrawNeed {
         let count = self.scene.surfaces().filter(|key| key.is_two_sided).count();
-        self.of_surfaces(Effect::TwoSidedFaces, count, |key| BatchKey { is_two_sided: false, ..*key })
+        self.of_surfaces(DrawEffect::TwoSidedFaces, count, |key| BatchKey { is_two_sided: false, ..*key })
     }
 
     /// What a change to all pages would save.
@@ -77,7 +77,7 @@ impl SceneEffects<'_> {
         self.saved_by(|scene| scene.pages.iter_mut().for_each(|page| change(&mut page.variant)))
     }
 
-    fn of_times(&self) -> Vec<Need> {
+    fn of_times(&self) -> Vec<DrawNeed> {
         let pages = || self.scene.pages.iter().map(|page| &page.variant);
         let has_sun = pages().any(|page| page.layer_count() > 0);
         let lamp_layers = pages().map(|page| page.lamp_layer_count).max().unwrap_or(0);
@@ -87,24 +87,24 @@ impl SceneEffects<'_> {
         let is_soft = has_sun && pages().any(|page| page.layer_count() > 0 && !page.is_point_sun);
         let on_pages = |change| self.saved_on_pages(change);
         vec![
-            Need::new(Effect::SunTimes, has_sun.then(|| on_pages(|page| page.lanes.clear())), Reason::Usual),
-            Need::new(
-                Effect::Penumbra,
+            DrawNeed::new(DrawEffect::SunTimes, has_sun.then(|| on_pages(|page| page.lanes.clear())), Reason::Usual),
+            DrawNeed::new(
+                DrawEffect::Penumbra,
                 is_soft.then(Census::default),
                 if has_sun { Reason::Usual } else { Reason::Unread },
             ),
-            Need::new(
-                Effect::DiscLanes,
+            DrawNeed::new(
+                DrawEffect::DiscLanes,
                 (lanes > 1).then(|| on_pages(|page| keep_middle_lane(&mut page.lanes))),
                 Reason::Count(lanes),
             ),
-            Need::new(
-                Effect::SeveralLayers,
+            DrawNeed::new(
+                DrawEffect::SeveralLayers,
                 (layers > 1).then(|| on_pages(keep_one_layer)),
                 Reason::Count(layers as usize),
             ),
-            Need::new(
-                Effect::SixteenBitTimes,
+            DrawNeed::new(
+                DrawEffect::SixteenBitTimes,
                 (has_times && self.scene.bits > 8).then(|| self.saved_by(|scene| scene.bits = 8)),
                 if has_times { Reason::Count(self.scene.bits as usize) } else { Reason::Unread },
             ),
@@ -112,17 +112,17 @@ impl SceneEffects<'_> {
         ]
     }
 
-    fn lamp(&self, layers: u32) -> Need {
+    fn lamp(&self, layers: u32) -> DrawNeed {
         let strip = |scene: &mut SceneNeeds| {
             scene.has_lamp = false;
             scene.pages.iter_mut().for_each(|page| page.variant.lamp_layer_count = 0);
         };
         let saved = self.scene.has_lamp.then(|| self.saved_by(strip));
         let is_unread = self.scene.has_lamp && layers == 0;
-        Need::new(Effect::Lamp, saved, if is_unread { Reason::Unread } else { Reason::Usual })
+        DrawNeed::new(DrawEffect::Lamp, saved, if is_unread { Reason::Unread } else { Reason::Usual })
     }
 
-    fn of_ambient(&self) -> [Need; 4] {
+    fn of_ambient(&self) -> [DrawNeed; 4] {
         use AmbientModel::{Bent, Hemisphere, Occlusion, Sky};
         let models: BTreeSet<AmbientModel> = self.scene.pages.iter().map(|page| page.variant.ambient).collect();
         let has = |model| models.contains(&model);
@@ -134,35 +134,35 @@ impl SceneEffects<'_> {
         };
         let has_backs =
             self.scene.pages.iter().any(|page| page.variant.has_backs && page.variant.ambient != Hemisphere);
-        let need = |effect, saved| Need::new(effect, saved, Reason::Usual);
+        let need = |effect, saved| DrawNeed::new(effect, saved, Reason::Usual);
         [
             need(
-                Effect::AmbientOcclusion,
+                DrawEffect::AmbientOcclusion,
                 (has(Occlusion) || has(Bent)).then(|| instead(&[Occlusion, Bent], Hemisphere)),
             ),
-            need(Effect::BentNormals, has(Bent).then(|| instead(&[Bent], Occlusion))),
-            need(Effect::SkyHarmonics, has(Sky).then(|| instead(&[Sky], Hemisphere))),
-            need(Effect::AmbientOfBacks, has_backs.then(|| self.saved_on_pages(|page| page.has_backs = false))),
+            need(DrawEffect::BentNormals, has(Bent).then(|| instead(&[Bent], Occlusion))),
+            need(DrawEffect::SkyHarmonics, has(Sky).then(|| instead(&[Sky], Hemisphere))),
+            need(DrawEffect::AmbientOfBacks, has_backs.then(|| self.saved_on_pages(|page| page.has_backs = false))),
         ]
     }
 
-    fn pages(&self) -> Need {
+    fn pages(&self) -> DrawNeed {
         let count = self.scene.pages.len();
-        Need::new(Effect::SeveralPages, (count > 1).then(|| self.saved_by(join_pages)), Reason::Count(count))
+        DrawNeed::new(DrawEffect::SeveralPages, (count > 1).then(|| self.saved_by(join_pages)), Reason::Count(count))
     }
 }
 
 /// The passes of every renderer: depths, and what lights.
-pub fn of_passes(scene: &SceneNeeds, output: Output, lit_pipelines: usize) -> [Need; 3] {
+pub fn of_passes(scene: &SceneNeeds, output: Output, lit_pipelines: usize) -> [DrawNeed; 3] {
     let depth_keys: BTreeSet<BatchKey> = scene.batches.iter().map(depth_key).collect();
     let pass = |pipelines| Census { passes: 1, pipelines, targets: 1, ..Census::default() };
     let background = Census { pipelines: 1, ..Census::default() };
     let is_lit = output == Output::Lit;
     let light_reason = if is_lit { Reason::Usual } else { Reason::VisibilityPicture };
     [
-        Need::new(Effect::DepthPass, Some(pass(depth_keys.len())), Reason::Usual),
-        Need::new(Effect::LightPass, Some(pass(lit_pipelines)), light_reason),
-        Need::new(Effect::SkyBackground, is_lit.then_some(background), Reason::Usual),
+        DrawNeed::new(DrawEffect::DepthPass, Some(pass(depth_keys.len())), Reason::Usual),
+        DrawNeed::new(DrawEffect::LightPass, Some(pass(lit_pipelines)), light_reason),
+        DrawNeed::new(DrawEffect::SkyBackground, is_lit.then_some(background), Reason::Usual),
     ]
 }
 

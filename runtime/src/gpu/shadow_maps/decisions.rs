@@ -3,15 +3,15 @@
 use super::plan::{MapNeeds, SunShading};
 use crate::gpu::frame::BatchKey;
 use crate::gpu::plan::{SceneEffects, SceneNeeds, change_keys};
-use crate::plan::{Census, Effect, Need, Reason, Uncounted};
+use crate::plan::{Census, DrawEffect, DrawNeed, Reason, Uncounted};
 use crate::shadow_maps::Variant;
 use sunbake_shaders::ShadowTap;
 
 /// Whether the ground is drawn apart.
-pub fn ground_apart(effects: &SceneEffects) -> Need {
+pub fn ground_apart(effects: &SceneEffects) -> DrawNeed {
     let is_on = effects.scene.surfaces().any(|key| key.is_ground);
     let join = |scene: &mut SceneNeeds| change_keys(scene, |key| BatchKey { is_ground: false, ..*key });
-    Need::new(Effect::GroundApart, is_on.then(|| effects.saved_by(join)), Reason::Usual)
+    DrawNeed::new(DrawEffect::GroundApart, is_on.then(|| effects.saved_by(join)), Reason::Usual)
 }
 
 /// Decides about each effect of shadow maps.
@@ -22,7 +22,7 @@ pub struct MapDecisions<'a> {
 
 impl MapDecisions<'_> {
     /// All of them.
-    pub fn all(&self) -> Vec<Need> {
+    pub fn all(&self) -> Vec<DrawNeed> {
         vec![
             self.shadows(),
             self.several_maps(),
@@ -40,7 +40,7 @@ impl MapDecisions<'_> {
         self.needs.totals(self.scene).beyond(&without.totals(self.scene))
     }
 
-    fn shadows(&self) -> Need {
+    fn shadows(&self) -> DrawNeed {
         let open = |needs: &mut MapNeeds| needs.shading = SunShading::Open;
         let saved = self.needs.is_shaded().then(|| self.saved_by(open));
         let reason = match (self.needs.shading, self.needs.is_exact) {
@@ -48,10 +48,10 @@ impl MapDecisions<'_> {
             (SunShading::Open, _) | (SunShading::Shaded { .. }, true) => Reason::Usual,
             (SunShading::Shaded { .. }, false) => Reason::Possible,
         };
-        Need::new(Effect::SunShadows, saved, reason)
+        DrawNeed::new(DrawEffect::SunShadows, saved, reason)
     }
 
-    fn several_maps(&self) -> Need {
+    fn several_maps(&self) -> DrawNeed {
         let maps = self.needs.maps();
         let one = |needs: &mut MapNeeds| {
             if let SunShading::Shaded { maps, drawn } = needs.shading {
@@ -63,41 +63,41 @@ impl MapDecisions<'_> {
             (2.., _) => Reason::CubeFaces(maps),
             _ => Reason::Count(maps),
         };
-        Need::new(Effect::SeveralMaps, (maps > 1).then(|| self.saved_by(one)), reason)
+        DrawNeed::new(DrawEffect::SeveralMaps, (maps > 1).then(|| self.saved_by(one)), reason)
     }
 
-    fn blurred_mask(&self) -> Need {
+    fn blurred_mask(&self) -> DrawNeed {
         let is_on = self.needs.is_shaded() && self.needs.reads.has_mask;
         let saved = is_on.then(|| self.saved_by(|needs| needs.reads.has_mask = false));
-        Need::new(Effect::BlurredMask, saved, Reason::Usual)
+        DrawNeed::new(DrawEffect::BlurredMask, saved, Reason::Usual)
     }
 
-    fn flat_mask(&self) -> Need {
+    fn flat_mask(&self) -> DrawNeed {
         let is_on = self.needs.is_shaded() && self.needs.reads.has_flat_mask;
         let saved = is_on.then(|| self.saved_by(|needs| needs.shading = SunShading::Open));
-        Need::new(Effect::FlatMask, saved, Reason::Usual)
+        DrawNeed::new(DrawEffect::FlatMask, saved, Reason::Usual)
     }
 
-    fn sampler(&self) -> Need {
+    fn sampler(&self) -> DrawNeed {
         let is_on = self.needs.is_shaded() && self.needs.reads.has_sampler();
         let saved = is_on.then(|| self.saved_by(|needs| needs.reads.tap = ShadowTap::Manual));
         let is_gathered = is_on && self.needs.reads.tap == ShadowTap::Gathered;
-        Need::new(Effect::MapSampler, saved, if is_gathered { Reason::Gathered } else { Reason::Usual })
+        DrawNeed::new(DrawEffect::MapSampler, saved, if is_gathered { Reason::Gathered } else { Reason::Usual })
     }
 
-    fn wide_filter(&self) -> Need {
+    fn wide_filter(&self) -> DrawNeed {
         let taps = match self.needs.settings.variant {
             Variant::Pcf16 | Variant::Cascades => 16,
             Variant::Pcf4 => 4,
             _ => 1,
         };
         let is_on = taps > 1 && self.needs.is_shaded();
-        let need = Need::new(Effect::WideFilter, is_on.then(Census::default), Reason::Usual);
+        let need = DrawNeed::new(DrawEffect::WideFilter, is_on.then(Census::default), Reason::Usual);
         need.with(Uncounted::Comparisons(taps))
     }
 
-    fn penumbra(&self) -> Need {
+    fn penumbra(&self) -> DrawNeed {
         let is_on = self.needs.settings.variant == Variant::Pcss && self.needs.is_shaded();
-        Need::new(Effect::MapPenumbra, is_on.then(Census::default), Reason::Usual)
+        DrawNeed::new(DrawEffect::MapPenumbra, is_on.then(Census::default), Reason::Usual)
     }
 }

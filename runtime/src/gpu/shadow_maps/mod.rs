@@ -19,7 +19,7 @@ mod textures;
 
 use super::device::{Gpu, GpuError};
 use super::frame::{
-    DEPTH_FORMAT, FrameTimes, Output, PassClock, ProgramTable, SceneOnGpu, Targets, readback, with_pipelines,
+    DEPTH_FORMAT, FrameTimes, Output, OwnTargets, PassClock, ProgramTable, SceneOnGpu, readback, with_pipelines,
 };
 use super::plan::SceneNeeds;
 use crate::View;
@@ -75,7 +75,7 @@ pub struct MapRenderer<'g> {
     /// What the maps hold.
     drawn: Vec<MapProjection>,
     programs: ProgramTable<MapProgram>,
-    targets: Targets,
+    targets: OwnTargets,
     clock: PassClock,
     report: MapReport,
     /// What the last picture called for.
@@ -116,7 +116,7 @@ impl<'g> MapRenderer<'g> {
             extents: None,
             drawn: Vec::new(),
             programs: ProgramTable::default(),
-            targets: Targets::new(DEPTH_FORMAT),
+            targets: OwnTargets::new(DEPTH_FORMAT),
             clock: PassClock::new(gpu, settings.is_timed),
             report: MapReport::default(),
             last: None,

@@ -6,7 +6,7 @@ use super::textures::{CasterMask, DepthMaps};
 use super::{MapRenderer, MapReport, SunNow};
 use crate::View;
 use crate::gpu::device::GpuError;
-use crate::gpu::frame::{Batch, Canvas, Output, PictureTarget, readback};
+use crate::gpu::frame::{Batch, FrameTarget, Output, PictureTarget, readback};
 use crate::light::Moment;
 use std::time::Instant;
 
@@ -57,9 +57,9 @@ impl MapRenderer<'_> {
             self.bindings.write(gpu, encoder, maps, view.eye_m, height_m);
             self.shadow_passes(encoder, maps);
         }
-        let canvas = Canvas { output, picture: target, depth, clock: &self.clock };
+        let into = FrameTarget { output, picture: target, depth, clock: &self.clock };
         let program = |key: &MapProgram| self.programs.get(key, target.format);
-        canvas.depth_pass(encoder, &self.scene, |key| program(&MapProgram::Depth(*key)));
+        into.depth_pass(encoder, &self.scene, |key| program(&MapProgram::Depth(*key)));
         let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
             let key = needs.surface_program_key(&self.scene.needs, &batch.key);
             if let MapProgram::Surface(_, SunReads::Maps | SunReads::Mask | SunReads::Flat, _) = key {
@@ -71,7 +71,7 @@ impl MapRenderer<'_> {
             }
         };
         let sky = (output == Output::Lit).then(|| program(&MapProgram::Sky));
-        canvas.surface_pass(encoder, &self.scene, draw, sky);
+        into.surface_pass(encoder, &self.scene, draw, sky);
         self.report.passes = self.clock.passes();
         self.last = Some(needs.drawn(self.report.drawn));
         Ok(())

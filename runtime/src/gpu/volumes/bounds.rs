@@ -13,13 +13,13 @@ use sunbake_shaders::{VolumeCorners, VolumeLight, VolumeUse};
 const MOST_CORNERS: [u64; 2] = [3 * 4, 3 * 8];
 
 /// What bounds the needs of a light.
-pub struct LightBounds<'a> {
+pub struct LightNeedsBound<'a> {
     pub casters: &'a Casters,
     pub settings: &'a VolumeSettings,
     pub output: Output,
 }
 
-impl LightBounds<'_> {
+impl LightNeedsBound<'_> {
     /// The needs of the sun, or of the lamp.
     pub fn light(&self, is_lamp: bool) -> LightNeeds {
         let [sun, lamp] = hard_lights(self.output);

@@ -4,7 +4,7 @@ use super::VolumeSettings;
 use super::plan::{LightNeeds, VolumeNeeds, light_blend};
 use super::programs::FaceKey;
 use crate::gpu::plan::SceneNeeds;
-use crate::plan::{Census, Effect, Need, Reason, Uncounted};
+use crate::plan::{Census, DrawEffect, DrawNeed, Reason, Uncounted};
 use crate::volumes::{CasterCounts, Mode};
 use sunbake_shaders::VolumeUse;
 
@@ -18,7 +18,7 @@ pub struct VolumeDecisions<'a> {
 
 impl VolumeDecisions<'_> {
     /// All of them.
-    pub fn all(&self) -> Vec<Need> {
+    pub fn all(&self) -> Vec<DrawNeed> {
         vec![
             self.sun(),
             self.sun_samples(),
@@ -42,17 +42,17 @@ impl VolumeDecisions<'_> {
     }
 
     /// An effect that, before a picture, may only be needed.
-    fn possible(&self, effect: Effect, is_on: bool, drop: impl Fn(&mut VolumeNeeds)) -> Need {
+    fn possible(&self, effect: DrawEffect, is_on: bool, drop: impl Fn(&mut VolumeNeeds)) -> DrawNeed {
         let reason = if is_on && !self.needs.is_exact { Reason::Possible } else { Reason::Usual };
-        Need::new(effect, is_on.then(|| self.saved_by(drop)), reason)
+        DrawNeed::new(effect, is_on.then(|| self.saved_by(drop)), reason)
     }
 
-    fn sun(&self) -> Need {
+    fn sun(&self) -> DrawNeed {
         let is_on = self.any(|light| !light.is_lamp());
-        self.possible(Effect::SunVolumes, is_on, |needs| needs.lights.retain(LightNeeds::is_lamp))
+        self.possible(DrawEffect::SunVolumes, is_on, |needs| needs.lights.retain(LightNeeds::is_lamp))
     }
 
-    fn sun_samples(&self) -> Need {
+    fn sun_samples(&self) -> DrawNeed {
         let suns = self.needs.lights.iter().filter(|light| !light.is_lamp());
         let count = suns.map(|light| light.count).max().unwrap_or(0);
         let one = |needs: &mut VolumeNeeds| {
@@ -61,11 +61,11 @@ impl VolumeDecisions<'_> {
                 (light.count, light.shaded, light.blend) = (1, light.shaded.min(1), light_blend(output, 1));
             }
         };
-        Need::new(Effect::SoftSun, (count > 1).then(|| self.saved_by(one)), Reason::Count(count))
+        DrawNeed::new(DrawEffect::SoftSun, (count > 1).then(|| self.saved_by(one)), Reason::Count(count))
     }
 
-    fn counted(&self, is_z_pass: bool) -> Need {
-        let effect = if is_z_pass { Effect::ZPass } else { Effect::ZFail };
+    fn counted(&self, is_z_pass: bool) -> DrawNeed {
+        let effect = if is_z_pass { DrawEffect::ZPass } else { DrawEffect::ZFail };
         let is_on = self.any(|light| light.counts(is_z_pass));
         self.possible(effect, is_on, |needs| {
             let is_kept = |key: &FaceKey| key.of != VolumeUse::Stencil || key.is_z_pass != is_z_pass;
@@ -73,22 +73,22 @@ impl VolumeDecisions<'_> {
         })
     }
 
-    fn open_meshes(&self) -> Need {
+    fn open_meshes(&self) -> DrawNeed {
         let count = self.counts.open_bodies;
         let triangles = self.counts.triangles - self.counts.solid_triangles;
-        let need = Need::new(Effect::OpenMeshes, (count > 0).then(Census::default), Reason::Count(count));
+        let need = DrawNeed::new(DrawEffect::OpenMeshes, (count > 0).then(Census::default), Reason::Count(count));
         need.with(Uncounted::Prisms(triangles))
     }
 
-    fn found(&self) -> Need {
+    fn found(&self) -> DrawNeed {
         let is_on = self.settings.mode == Mode::Gpu;
         let saved = is_on.then(|| Census { volume_buffers: 2, ..Census::default() });
-        Need::new(Effect::SilhouettesByGpu, saved, Reason::Usual)
+        DrawNeed::new(DrawEffect::SilhouettesByGpu, saved, Reason::Usual)
     }
 
-    fn runs(&self) -> Need {
+    fn runs(&self) -> DrawNeed {
         let is_on = self.any(|light| light.runs > 1);
-        self.possible(Effect::SeveralRuns, is_on, |needs| {
+        self.possible(DrawEffect::SeveralRuns, is_on, |needs| {
             for light in needs.lights.iter_mut().filter(|light| light.runs > 1) {
                 light.buffers.0 -= light.runs - 1;
                 light.runs = 1;
@@ -96,11 +96,11 @@ impl VolumeDecisions<'_> {
         })
     }
 
-    fn shown(&self) -> Need {
+    fn shown(&self) -> DrawNeed {
         let is_on = self.any(|light| light.faces.iter().any(|key| key.of == VolumeUse::Show));
         let hide = |needs: &mut VolumeNeeds| {
             needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| key.of == VolumeUse::Stencil));
         };
-        Need::new(Effect::ShownVolumes, is_on.then(|| self.saved_by(hide)), Reason::Usual)
+        DrawNeed::new(DrawEffect::ShownVolumes, is_on.then(|| self.saved_by(hide)), Reason::Usual)
     }
 }

@@ -15,6 +15,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// The farthest end of a lamp's volume, as a multiple of its caster's distance.
 const MOST_TIMES: f64 = 1e4;
+
 /// The volumes of a light.
 pub struct Extruded {
     /// The light.

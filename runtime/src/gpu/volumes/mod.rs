@@ -32,7 +32,7 @@ mod show;
 pub use report::{FrameReport, LightReport, volumes_plan};
 
 use super::device::{Gpu, GpuError};
-use super::frame::{Output, PassClock, ProgramTable, STENCIL_FORMAT, SceneOnGpu, Targets, readback};
+use super::frame::{Output, OwnTargets, PassClock, ProgramTable, STENCIL_FORMAT, SceneOnGpu, readback};
 use crate::View;
 use crate::light::Moment;
 use crate::stage::Stage;
@@ -76,7 +76,7 @@ pub struct VolumeRenderer<'g> {
     extruded: [Option<Extruded>; 2],
     sun_radius_rad: f64,
     programs: ProgramTable<VolumeProgram>,
-    targets: Targets,
+    targets: OwnTargets,
     clock: PassClock,
     report: FrameReport,
     last: Vec<LastLight>,
@@ -105,7 +105,7 @@ impl<'g> VolumeRenderer<'g> {
             extruded: [None, None],
             sun_radius_rad: stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad),
             programs: ProgramTable::default(),
-            targets: Targets::new(STENCIL_FORMAT),
+            targets: OwnTargets::new(STENCIL_FORMAT),
             clock: PassClock::new(gpu, settings.is_timed),
             report: FrameReport::default(),
             last: Vec::new(),

@@ -5,7 +5,7 @@ use super::draws::{FaceDraw, VolumeDraws};
 use super::extruded::CountedRun;
 use super::lights::FrameLight;
 use super::programs::{EARLIER_RUN, FaceKey, VolumeProgram, face_key, hard_key};
-use super::record::VolumeCanvas;
+use super::record::VolumeTarget;
 use crate::gpu::frame::{
     DepthBuffer, Output, Phase, PictureTarget, Program, STENCIL_FORMAT, begin_color_pass, begin_depth_pass,
 };
@@ -57,22 +57,22 @@ impl VolumeRenderer<'_> {
     pub(super) fn light_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        canvas: &VolumeCanvas<'_>,
+        into: &VolumeTarget<'_>,
         light: Option<(&FrameLight, bool)>,
         place: PassPlace,
     ) {
-        let is_mask = canvas.output != Output::Lit;
+        let is_mask = into.output != Output::Lit;
         let load = match is_mask && place.is_first {
             true => wgpu::LoadOp::Clear(wgpu::Color::BLACK),
             false => wgpu::LoadOp::Load,
         };
         let depth = match light {
             // No volumes were counted for this light: those of an earlier one are cleared.
-            Some((_, false)) => canvas.depth.with_stencil_cleared(),
-            _ => canvas.depth.read_only(),
+            Some((_, false)) => into.depth.with_stencil_cleared(),
+            _ => into.depth.read_only(),
         };
-        let color = canvas.picture.attachment(load);
-        let program = |key: VolumeProgram| self.programs.get(&key, canvas.picture.format);
+        let color = into.picture.attachment(load);
+        let program = |key: VolumeProgram| self.programs.get(&key, into.picture.format);
         let mut pass = begin_color_pass(encoder, "light", color, Some(depth), &self.clock, Phase::Light);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
         if let Some((light, _)) = light {

@@ -1,7 +1,7 @@
 //! What pictures under shadow volumes call for.
 
 use super::VolumeSettings;
-use super::bounds::LightBounds;
+use super::bounds::LightNeedsBound;
 use super::decisions::VolumeDecisions;
 use super::programs::{FaceKey, LightBlend, VolumeProgram, hard_key};
 use crate::gpu::frame::{BatchKey, Output, depth_key, with_pipelines};
@@ -103,7 +103,7 @@ impl VolumeNeeds {
         output: Output,
         buffers: (usize, u64),
     ) -> Self {
-        let bounds = LightBounds { casters, settings, output };
+        let bounds = LightNeedsBound { casters, settings, output };
         let sun = (stage.path.is_some() && output != Output::LampVisibility).then(|| bounds.light(false));
         let lamp = (stage.lamp.is_some() && output != Output::Visibility).then(|| bounds.light(true));
         Self { output, lights: sun.into_iter().chain(lamp).collect(), buffers, is_exact: false }

@@ -10,14 +10,14 @@ use super::report::{FindSeconds, FrameReport};
 use super::{VolumeRenderer, VolumeSettings};
 use crate::View;
 use crate::gpu::device::GpuError;
-use crate::gpu::frame::{Batch, Canvas, DepthBuffer, Output, PictureTarget, readback};
+use crate::gpu::frame::{Batch, DepthBuffer, FrameTarget, Output, PictureTarget, readback};
 use crate::light::Moment;
 use crate::volumes::{FramePlan, Light};
 use std::time::Instant;
 use sunbake_shaders::VolumeUse;
 
 /// What the passes of a frame draw into.
-pub struct VolumeCanvas<'a> {
+pub struct VolumeTarget<'a> {
     pub output: Output,
     pub picture: PictureTarget<'a>,
     pub depth: DepthBuffer,
@@ -41,8 +41,8 @@ impl VolumeRenderer<'_> {
         moment: &Moment,
     ) -> Result<(), GpuError> {
         let depth = self.targets.depth(self.gpu, output, view.size)?;
-        let canvas = VolumeCanvas { output, picture: target, depth, is_flushed: false };
-        self.record(encoder, &canvas, view, moment)
+        let into = VolumeTarget { output, picture: target, depth, is_flushed: false };
+        self.record(encoder, &into, view, moment)
     }
 
     /// Draws into a picture of its own, and reads it back.
@@ -50,10 +50,10 @@ impl VolumeRenderer<'_> {
         let gpu = self.gpu;
         let picture = self.targets.picture(gpu, output, view.size)?;
         let depth = self.targets.depth(gpu, output, view.size)?;
-        let canvas = VolumeCanvas { output, picture: picture.target(), depth, is_flushed: true };
+        let into = VolumeTarget { output, picture: picture.target(), depth, is_flushed: true };
         gpu.checked("drawing", || {
             let mut encoder = gpu.encoder();
-            self.record(&mut encoder, &canvas, view, moment)?;
+            self.record(&mut encoder, &into, view, moment)?;
             let floats = readback::read(gpu, &picture, output.channels(), encoder)?;
             self.report.times = self.clock.read(gpu)?;
             Ok(floats)
@@ -63,11 +63,11 @@ impl VolumeRenderer<'_> {
     fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        canvas: &VolumeCanvas<'_>,
+        into: &VolumeTarget<'_>,
         view: &View,
         moment: &Moment,
     ) -> Result<(), GpuError> {
-        let (gpu, output, format) = (self.gpu, canvas.output, canvas.picture.format);
+        let (gpu, output, format) = (self.gpu, into.output, into.picture.format);
         self.check_adding(output, format)?;
         self.report = FrameReport::default();
         (self.last, self.last_output) = (Vec::new(), Some(output));
@@ -78,16 +78,16 @@ impl VolumeRenderer<'_> {
         })?;
         self.scene.frame.write(gpu, encoder, view, moment);
         self.clock.start();
-        self.surface_passes(encoder, canvas, lights.is_empty());
+        self.surface_passes(encoder, into, lights.is_empty());
         for (i, light) in lights.iter().enumerate() {
-            if canvas.is_flushed {
+            if into.is_flushed {
                 // Volumes of earlier lights can be freed once they are drawn.
                 let done = std::mem::replace(encoder, gpu.encoder());
                 gpu.queue.submit([done.finish()]);
             }
             self.scene.frame.write(gpu, encoder, view, &light.moment);
             let place = PassPlace { is_first: i == 0, is_last: i + 1 == lights.len() };
-            self.light(encoder, canvas, view, light, place)?;
+            self.light(encoder, into, view, light, place)?;
         }
         self.report.passes = self.clock.passes();
         Ok(())
@@ -105,9 +105,9 @@ impl VolumeRenderer<'_> {
     }
 
     /// Depths and ambient light. A picture of visibility without lights is all background and darkness.
-    fn surface_passes(&self, encoder: &mut wgpu::CommandEncoder, canvas: &VolumeCanvas<'_>, is_unlit: bool) {
-        let (output, picture, depth) = (canvas.output, canvas.picture, canvas.depth.clone());
-        let frame = Canvas { output, picture, depth, clock: &self.clock };
+    fn surface_passes(&self, encoder: &mut wgpu::CommandEncoder, into: &VolumeTarget<'_>, is_unlit: bool) {
+        let (output, picture, depth) = (into.output, into.picture, into.depth.clone());
+        let frame = FrameTarget { output, picture, depth, clock: &self.clock };
         let program = |key: &VolumeProgram| self.programs.get(key, picture.format);
         frame.depth_pass(encoder, &self.scene, |key| program(&VolumeProgram::Depth(*key)));
         if output == Output::Lit {
@@ -118,7 +118,7 @@ impl VolumeRenderer<'_> {
             };
             frame.surface_pass(encoder, &self.scene, draw, Some(sky));
         } else if is_unlit {
-            self.light_pass(encoder, canvas, None, PassPlace { is_first: true, is_last: true });
+            self.light_pass(encoder, into, None, PassPlace { is_first: true, is_last: true });
         }
     }
 
@@ -126,7 +126,7 @@ impl VolumeRenderer<'_> {
     fn light(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
-        canvas: &VolumeCanvas<'_>,
+        into: &VolumeTarget<'_>,
         view: &View,
         light: &FrameLight,
         place: PassPlace,
@@ -139,11 +139,11 @@ impl VolumeRenderer<'_> {
         let slot = slot(&light.light);
         let is_shaded = draws.triangles() > 0;
         self.note_last(light, is_shaded);
-        self.prepare_faces(slot, &draws, VolumeUse::Stencil, canvas.picture.format);
+        self.prepare_faces(slot, &draws, VolumeUse::Stencil, into.picture.format);
         if is_shaded {
-            self.volume_pass(encoder, &canvas.depth, slot, &plan, &draws);
+            self.volume_pass(encoder, &into.depth, slot, &plan, &draws);
         }
-        self.light_pass(encoder, canvas, Some((light, is_shaded)), place);
+        self.light_pass(encoder, into, Some((light, is_shaded)), place);
         Ok(())
     }
 

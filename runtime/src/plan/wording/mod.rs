@@ -3,17 +3,17 @@
 mod census;
 mod texts;
 
-use super::{Effect, Need, Reason, Uncounted};
+use super::{DrawEffect, DrawNeed, Reason, Uncounted};
 use texts::{EffectText, SUN_DOWN, TEXTS};
 
-impl Effect {
+impl DrawEffect {
     /// Its name, in reports and manifests.
     pub fn name(self) -> &'static str {
         text(self).name
     }
 }
 
-fn text(effect: Effect) -> &'static EffectText {
+fn text(effect: DrawEffect) -> &'static EffectText {
     // Entries are in the order of the enum, which a test checks.
     let text = &TEXTS[effect as usize];
     debug_assert_eq!(text.effect, effect);
@@ -21,13 +21,13 @@ fn text(effect: Effect) -> &'static EffectText {
 }
 
 /// The flag or property that would turn an effect off or on.
-pub fn toggled_by(need: &Need) -> &'static str {
+pub fn toggled_by(need: &DrawNeed) -> &'static str {
     let text = text(need.effect);
     if need.is_on { text.off_by } else { text.on_by }
 }
 
 /// What an effect takes; where it is off, what it would take.
-pub fn cost(need: &Need) -> String {
+pub fn cost(need: &DrawNeed) -> String {
     let EffectText { would_take, also_takes, .. } = *text(need.effect);
     let besides = match need.uncounted {
         Uncounted::Nothing => also_takes.to_owned(),
@@ -48,17 +48,17 @@ pub fn cost(need: &Need) -> String {
     }
 }
 
-fn rays(effect: Effect, count: Option<u32>) -> String {
+fn rays(effect: DrawEffect, count: Option<u32>) -> String {
     match (effect, count) {
-        (Effect::TruthOfDisc, None) => "N rays a pixel and light, not one".into(),
-        (Effect::TruthOfDisc, Some(n)) => format!("{n} rays a pixel and light"),
+        (DrawEffect::TruthOfDisc, None) => "N rays a pixel and light, not one".into(),
+        (DrawEffect::TruthOfDisc, Some(n)) => format!("{n} rays a pixel and light"),
         (_, None) => "a ray a pixel".into(),
         (_, Some(n)) => format!("{n} rays a pixel"),
     }
 }
 
 /// Why an effect is on or off.
-pub fn why(need: &Need) -> String {
+pub fn why(need: &DrawNeed) -> String {
     let text = text(need.effect);
     match need.reason {
         Reason::Count(count) => of_count(need.effect, count),
@@ -74,39 +74,39 @@ pub fn why(need: &Need) -> String {
 }
 
 /// What it depends on is not read.
-fn unread(effect: Effect) -> &'static str {
+fn unread(effect: DrawEffect) -> &'static str {
     match effect {
-        Effect::Penumbra => "no times of a sun are read",
-        Effect::Lamp => "the set has a lamp, and its times are not read",
+        DrawEffect::Penumbra => "no times of a sun are read",
+        DrawEffect::Lamp => "the set has a lamp, and its times are not read",
         _ => "no times are read",
     }
 }
 
 /// It depends on the view and the light.
-fn possible(effect: Effect) -> &'static str {
+fn possible(effect: DrawEffect) -> &'static str {
     match effect {
-        Effect::SunVolumes => "the sun may be up",
-        Effect::ZPass => "the eye may be outside of volumes whose caps are hidden",
-        Effect::ZFail => "the eye may come into some volume, or a cap show",
-        Effect::SeveralRuns => "there are more than 255 triangles, which may overlap",
+        DrawEffect::SunVolumes => "the sun may be up",
+        DrawEffect::ZPass => "the eye may be outside of volumes whose caps are hidden",
+        DrawEffect::ZFail => "the eye may come into some volume, or a cap show",
+        DrawEffect::SeveralRuns => "there are more than 255 triangles, which may overlap",
         _ => "something may be in shadow",
     }
 }
 
 /// Reasons that are counts.
-fn of_count(effect: Effect, count: usize) -> String {
+fn of_count(effect: DrawEffect, count: usize) -> String {
     let [one, several] = match effect {
-        Effect::BaseColorTextures => ["image is drawn as a base colour", "images are drawn as base colours"],
-        Effect::VertexColors => ["batch has vertex colours", "batches have vertex colours"],
-        Effect::AlphaTest => ["batch has an alpha mask", "batches have alpha masks"],
-        Effect::TwoSidedFaces => ["batch shows both sides", "batches show both sides"],
-        Effect::DiscLanes => ["lane is in the set", "lanes are in the set"],
-        Effect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
-        Effect::SixteenBitTimes => return format!("times have {count} bits"),
-        Effect::SeveralPages => ["page holds all surfaces", "pages hold the surfaces"],
-        Effect::SoftSun => ["sun: its centre, with hard edges", "suns share its disc"],
-        Effect::OpenMeshes => ["mesh that casts is open", "meshes that cast are open"],
-        Effect::SeveralMaps => ["map holds all that may be in shadow", "maps hold what may be in shadow"],
+        DrawEffect::BaseColorTextures => ["image is drawn as a base colour", "images are drawn as base colours"],
+        DrawEffect::VertexColors => ["batch has vertex colours", "batches have vertex colours"],
+        DrawEffect::AlphaTest => ["batch has an alpha mask", "batches have alpha masks"],
+        DrawEffect::TwoSidedFaces => ["batch shows both sides", "batches show both sides"],
+        DrawEffect::DiscLanes => ["lane is in the set", "lanes are in the set"],
+        DrawEffect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
+        DrawEffect::SixteenBitTimes => return format!("times have {count} bits"),
+        DrawEffect::SeveralPages => ["page holds all surfaces", "pages hold the surfaces"],
+        DrawEffect::SoftSun => ["sun: its centre, with hard edges", "suns share its disc"],
+        DrawEffect::OpenMeshes => ["mesh that casts is open", "meshes that cast are open"],
+        DrawEffect::SeveralMaps => ["map holds all that may be in shadow", "maps hold what may be in shadow"],
         _ => ["", ""],
     };
     match count {

@@ -1,10 +1,10 @@
 //! What is said of each effect, whatever the scene.
 
-use super::super::Effect;
+use super::super::DrawEffect;
 
 /// The texts of an effect.
 pub struct EffectText {
-    pub effect: Effect,
+    pub effect: DrawEffect,
     /// Its name, in reports and manifests.
     pub name: &'static str,
     /// Why it is on, unless its reason says more.
@@ -32,7 +32,7 @@ const ALPHA: &str = "a material of alphaMode MASK or BLEND";
 
 /// No text at all.
 const NONE: EffectText = EffectText {
-    effect: Effect::DepthPass,
+    effect: DrawEffect::DepthPass,
     name: "",
     why_on: "",
     why_off: "",
@@ -45,7 +45,7 @@ const NONE: EffectText = EffectText {
 /// One entry per effect.
 pub const TEXTS: [EffectText; 37] = [
     EffectText {
-        effect: Effect::DepthPass,
+        effect: DrawEffect::DepthPass,
         name: "depth-pass",
         why_on: "the nearest surfaces are found first, so that each pixel is lit once",
         off_by: NEVER,
@@ -53,7 +53,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::LightPass,
+        effect: DrawEffect::LightPass,
         name: "light-pass",
         why_on: "surfaces are lit",
         off_by: NEVER,
@@ -61,7 +61,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SkyBackground,
+        effect: DrawEffect::SkyBackground,
         name: "sky-background",
         why_on: "the sky behind the scene is drawn",
         why_off: "a picture of visibility has no sky",
@@ -71,7 +71,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::BaseColorTextures,
+        effect: DrawEffect::BaseColorTextures,
         name: "base-colour-textures",
         would_take: "a texture an image, a group of two bindings, a vertex buffer, and a pipeline a kind of surface",
         off_by: "materials without baseColorTexture",
@@ -79,7 +79,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::VertexColors,
+        effect: DrawEffect::VertexColors,
         name: "vertex-colours",
         would_take: "a vertex buffer, and a pipeline a kind of surface",
         off_by: "meshes without COLOR_0",
@@ -87,7 +87,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::AlphaTest,
+        effect: DrawEffect::AlphaTest,
         name: "alpha-test",
         would_take: "a pipeline for depths and one a kind of surface",
         also_takes: "alpha looked up at each of their pixels in every pass",
@@ -96,7 +96,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::TwoSidedFaces,
+        effect: DrawEffect::TwoSidedFaces,
         name: "two-sided-faces",
         would_take: "a pipeline for depths and one a kind of surface, without culling",
         off_by: "materials without \"doubleSided\"",
@@ -104,7 +104,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SunTimes,
+        effect: DrawEffect::SunTimes,
         name: "sun-times",
         why_on: "the set stores when texels see the sun, and this reads it",
         why_off: "none is read",
@@ -114,7 +114,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "--technique baked, of a set with a sun",
     },
     EffectText {
-        effect: Effect::Penumbra,
+        effect: DrawEffect::Penumbra,
         name: "penumbra",
         why_on: "the sun has a width",
         why_off: "the sun has no width: it is seen or not",
@@ -124,7 +124,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "a set whose sun has a width",
     },
     EffectText {
-        effect: Effect::DiscLanes,
+        effect: DrawEffect::DiscLanes,
         name: "disc-lanes",
         would_take: "as many layers for each lane more",
         off_by: "a set baked with --lanes 1",
@@ -132,7 +132,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SeveralLayers,
+        effect: DrawEffect::SeveralLayers,
         name: "several-layers",
         would_take: "a layer more of each texture of times",
         off_by: "a set baked with --layers 1",
@@ -140,7 +140,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SixteenBitTimes,
+        effect: DrawEffect::SixteenBitTimes,
         name: "16-bit-times",
         would_take: "twice the bytes of times",
         off_by: "a set baked with --bits 8",
@@ -148,7 +148,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::Lamp,
+        effect: DrawEffect::Lamp,
         name: "lamp",
         why_on: "the set has a lamp, and stores when texels see it",
         why_off: "there is no lamp, or it is off",
@@ -158,7 +158,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::AmbientOcclusion,
+        effect: DrawEffect::AmbientOcclusion,
         name: "ambient-occlusion",
         why_on: "the share of the sky that texels see is read",
         why_off: "the share of the sky that texels see is not read",
@@ -168,7 +168,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::BentNormals,
+        effect: DrawEffect::BentNormals,
         name: "bent-normals",
         why_on: "from where texels see the sky is read",
         why_off: "from where texels see the sky is not read",
@@ -178,7 +178,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SkyHarmonics,
+        effect: DrawEffect::SkyHarmonics,
         name: "sky-sh2",
         why_on: "how any sky adds up at texels is read",
         why_off: "how any sky adds up at texels is not read",
@@ -188,7 +188,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::AmbientOfBacks,
+        effect: DrawEffect::AmbientOfBacks,
         name: "ambient-of-backs",
         why_on: "what the backs of surfaces see of the sky is read",
         why_off: "what the backs of surfaces see of the sky is not read",
@@ -198,7 +198,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SeveralPages,
+        effect: DrawEffect::SeveralPages,
         name: "several-pages",
         would_take: "the textures and bindings of one page more, and a draw",
         off_by: "a set baked with a larger --size",
@@ -206,7 +206,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SunVolumes,
+        effect: DrawEffect::SunVolumes,
         name: "sun-volumes",
         why_on: "the sun is up",
         why_off: SUN_DOWN,
@@ -216,7 +216,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SoftSun,
+        effect: DrawEffect::SoftSun,
         name: "soft-sun",
         would_take: "a pass of volumes and one of light for each sun more",
         off_by: "--sun-samples 1",
@@ -224,7 +224,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::ZPass,
+        effect: DrawEffect::ZPass,
         name: "z-pass",
         why_on: "the eye is outside of some volume, and the surface hides its caps",
         why_off: "nothing is counted in front of the surface",
@@ -234,7 +234,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::ZFail,
+        effect: DrawEffect::ZFail,
         name: "z-fail",
         why_on: "the eye may be in some volume, or a cap shows: it is counted behind the surface, with its caps",
         why_off: "no eye is in a volume, and no cap shows",
@@ -244,7 +244,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::OpenMeshes,
+        effect: DrawEffect::OpenMeshes,
         name: "open-meshes",
         would_take: "prisms of all of its triangles, where a closed mesh has those of what faces the light",
         off_by: "closing their holes, or --leave-out when baking",
@@ -252,7 +252,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SilhouettesByGpu,
+        effect: DrawEffect::SilhouettesByGpu,
         name: "silhouettes-by-gpu",
         why_on: "volumes:gpu asks for it",
         why_off: "the CPU finds silhouettes",
@@ -262,7 +262,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "--technique volumes:gpu",
     },
     EffectText {
-        effect: Effect::SeveralRuns,
+        effect: DrawEffect::SeveralRuns,
         name: "several-runs",
         why_on: "more than 255 prisms may hold a pixel",
         why_off: "no more than 255 prisms hold a pixel: eight bits count them",
@@ -272,7 +272,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::ShownVolumes,
+        effect: DrawEffect::ShownVolumes,
         name: "shown-volumes",
         why_on: "--output volumes shows them",
         why_off: "volumes are counted, and not shown",
@@ -282,7 +282,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "--output volumes",
     },
     EffectText {
-        effect: Effect::SunShadows,
+        effect: DrawEffect::SunShadows,
         name: "sun-shadows",
         why_on: "something in view may be in shadow",
         why_off: "nothing can be in shadow",
@@ -292,7 +292,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::SeveralMaps,
+        effect: DrawEffect::SeveralMaps,
         name: "several-maps",
         would_take: "a map, a pass, a group and a binding for each more",
         off_by: OTHER_MAP,
@@ -300,7 +300,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::BlurredMask,
+        effect: DrawEffect::BlurredMask,
         name: "blurred-mask",
         why_on: "map:ground blurs a mask of casters on the ground",
         why_off: "no surface reads one",
@@ -310,7 +310,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::FlatMask,
+        effect: DrawEffect::FlatMask,
         name: "flat-mask",
         why_on: "map:planar projects casters flat onto the ground",
         why_off: "no surface reads one",
@@ -320,7 +320,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::MapSampler,
+        effect: DrawEffect::MapSampler,
         name: "map-sampler",
         why_on: "a sampler compares",
         why_off: "the shader compares texels itself, or none is read",
@@ -330,7 +330,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::WideFilter,
+        effect: DrawEffect::WideFilter,
         name: "wide-filter",
         why_on: "edges are filtered over four by four texels",
         why_off: "one place is compared",
@@ -340,7 +340,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::MapPenumbra,
+        effect: DrawEffect::MapPenumbra,
         name: "map-penumbra",
         why_on: "map:pcss filters as widely as the penumbra is",
         why_off: "filters have one width",
@@ -350,7 +350,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "--technique map:pcss",
     },
     EffectText {
-        effect: Effect::GroundApart,
+        effect: DrawEffect::GroundApart,
         name: "ground-apart",
         why_on: "the lowest large level plane is drawn apart",
         why_off: "no surface is level",
@@ -360,7 +360,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::TruthOfDisc,
+        effect: DrawEffect::TruthOfDisc,
         name: "truth-of-disc",
         why_on: "truth:soft sees the light's disc",
         why_off: "truth:hard sees the light's middle",
@@ -369,7 +369,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::TracedLamp,
+        effect: DrawEffect::TracedLamp,
         name: "lamp",
         why_on: "the set has a lamp",
         why_off: "there is no lamp, or it is off",
@@ -378,7 +378,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: Effect::TracedAlphaMask,
+        effect: DrawEffect::TracedAlphaMask,
         name: "alpha-test",
         why_on: "surfaces have alpha masks",
         why_off: "no surface has an alpha mask",
