@@ -7,7 +7,7 @@ use libtest_mimic::Trial;
 use std::path::Path;
 use std::time::Instant;
 use sunbake::atlas::{self, AtlasError, AtlasSettings, Density, SurfacePoint};
-use sunbake::scene::{LoadLimits, load};
+use sunbake::scene::{Alpha, LoadLimits, Material, Scene, load};
 use sunbake::sun::SunPath;
 use sunbake::visibility::lit_at;
 use sunbake_tests::engines::{EXACT, FINDS_ALL};
@@ -69,10 +69,17 @@ fn compare(here: &Traced, count: usize) -> Agreement {
     all
 }
 
+/// Makes outline hulls invisible: around littlest_tokyo one keeps all light out, and nothing is left to compare.
+fn leave_out_hulls(scene: &mut Scene) {
+    let is_hull = |material: &&mut Material| material.name.as_deref().is_some_and(|name| name.contains("outline"));
+    scene.materials.iter_mut().filter(is_hull).for_each(|material| material.alpha = Alpha::Invisible);
+}
+
 /// Hard case I7.
 fn random_texels_agree_with_brute_force(file: &Path) {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
-    let scene = load(file, &LoadLimits::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let mut scene = load(file, &LoadLimits::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
+    leave_out_hulls(&mut scene);
     let started = Instant::now();
     let found = compare(&Traced::new(scene), asked_for("SUNBAKE_TEXELS", 9));
     println!(
