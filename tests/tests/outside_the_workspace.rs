@@ -30,11 +30,12 @@ fn copy_crate(folder: &Path) {
 fn a_crate_outside_bakes_in_memory_and_draws_with_its_own_device() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     copy_crate(folder.path());
+    let target = workspace().canonicalize().expect("the workspace is there").join("target/outside");
     let output = Command::new(env!("CARGO"))
         .args(["run", "--quiet", "--offline"])
         .current_dir(folder.path())
         // Kept between runs, so that only the first takes more than seconds.
-        .env("CARGO_TARGET_DIR", workspace().join("target/outside"))
+        .env("CARGO_TARGET_DIR", target)
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", stderr(&output));
