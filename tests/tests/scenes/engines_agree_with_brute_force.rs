@@ -83,8 +83,8 @@ fn random_texels_agree_with_brute_force(file: &Path) {
     let started = Instant::now();
     let found = compare(&Traced::new(scene), asked_for("SUNBAKE_TEXELS", 9));
     println!(
-        "{name}: {} texels, {} k suns, {} edges; disagreement about {} suns beside an edge, {} elsewhere, {} intervals; \
-         {:.1} s",
+        "{name}: {} texels, {} k suns, {} edges; disagreement about {} suns beside an edge, {} elsewhere, {} \
+         intervals; {:.1} s",
         found.points,
         found.suns >> 10,
         found.edges,
