@@ -9,9 +9,9 @@
 //!                sun, lamp, trace
 //! ```
 //!
-//! A module imports only what lies below it, in this order: `scene`, `sun` and `lamp`; `trace`; `atlas`; `visibility` and
-//! `ambient`; `maps`; `settings`; `disk` and `glb`; `bake` with `plan`; `cost` and `cli`. [`intervals`] lies below them
-//! all.
+//! A module imports only what lies below it, in this order: `scene`, `sun` and `lamp`; `trace`; `atlas`; `visibility`
+//! and `ambient`; `maps`; `settings`; `disk` and `glb`; `bake` with `plan`; `cost` and `cli`. [`intervals`] lies below
+//! them all.
 
 pub mod ambient;
 pub mod atlas;

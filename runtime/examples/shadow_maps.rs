@@ -58,7 +58,7 @@ fn main() -> Result<(), Anything> {
     let mut table = PictureTable {
         title: vec![
             format!("shadow maps of {size_texels} texels at {clock}"),
-            "under each its mean error, hard variants against truth of the centre of the sun and soft ones against truth of its disc".into(),
+            "under each its mean error: hard variants against truth of the sun's centre, soft ones of its disc".into(),
         ],
         rows: ["map", "truth", "difference"].map(|name| (name.to_owned(), Vec::new())).into(),
         heads: Vec::new(),

@@ -6,7 +6,7 @@
 //! compared alike. A [`DrawPlan`] says what a picture calls for, and why. The modules read in that order:
 //!
 //! ```text
-//! stage -> camera -> light -> technique (baked on the GPU | on the CPU | volumes | shadow maps | truth) -> shade -> image
+//! stage -> camera -> light -> technique (baked on GPU or CPU | volumes | shadow maps | truth) -> shade -> image
 //!                                        gpu                playback                                       compare
 //! ```
 //!

@@ -1,4 +1,5 @@
-//! Lit pictures on the CPU, from any technique's visibility: twin of `surface/lit_fragment.wgsl` and `surface/shade.wgsl`.
+//! Lit pictures on the CPU, from any technique's visibility: twin of `surface/lit_fragment.wgsl` and
+//! `surface/shade.wgsl`.
 
 use crate::image::Raster;
 use crate::light::Moment;

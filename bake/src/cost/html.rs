@@ -91,17 +91,17 @@ fn explanation(report: &CostReport) -> String {
         "<p><b>Whole bakes</b>: a set is baked, read from its files as a runtime reads it, and compared with the exact \
          answer at {points} points drawn evenly by area over all surfaces ({buried} more lie inside solids and do not \
          count). The exact answer is that at the point itself, along {lanes} lanes across the sun's disc, compared at \
-         {moments} moments of the day; and for the sky, the ambient visibility by {point_rays} rays. Where there was no \
-         time for a bake, only the texels that the points read are baked (a sparse bake): its error of sun is the same, \
-         its ambient visibility is not stitched at seams, and its time is a prediction.</p>\n\
+         {moments} moments of the day; and for the sky, the ambient visibility by {point_rays} rays. Where there was \
+         no time for a bake, only the texels that the points read are baked (a sparse bake): its error of sun is the \
+         same, its ambient visibility is not stitched at seams, and its time is a prediction.</p>\n\
          <p><b>Settings at texels</b> are varied one at a time on {measured_texels} of the {page_texels} texels of a \
-         page of {edge}, in runs of neighbours; seconds are scaled to all of them. Each is compared with the best answer \
-         for the same texel (for the sky {texel_rays} rays), so the error is that of the setting alone, without that of \
-         texels that are too large.</p>\n\
+         page of {edge}, in runs of neighbours; seconds are scaled to all of them. Each is compared with the best \
+         answer for the same texel (for the sky {texel_rays} rays), so the error is that of the setting alone, \
+         without that of texels that are too large.</p>\n\
          <p><b>Minutes of sun</b>: for how much of the day the sun is wrong, where half of its disc counts half. Point \
-         at a circle or a dot for its name; a ring marks the knee, the point farthest below the straight line between a \
-         curve's ends, both axes being logarithmic. Where a small page cannot hold all charts there are several, so a \
-         smaller `--size` may come out as dense as a larger one. Click a heading to sort.</p>\n"
+         at a circle or a dot for its name; a ring marks the knee, the point farthest below the straight line between \
+         a curve's ends, both axes being logarithmic. Where a small page cannot hold all charts there are several, so \
+         a smaller `--size` may come out as dense as a larger one. Click a heading to sort.</p>\n"
     )
 }
 

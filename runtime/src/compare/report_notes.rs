@@ -9,19 +9,19 @@ use sunbake::maps::Bits;
 use sunbake::report::Machine;
 use sunbake::scene::Alpha;
 
-const NO_ADAPTER: &str = "No GPU adapter drew: only what the CPU can draw was compared, and times are those of a CPU from \
-                          call to picture.";
+const NO_ADAPTER: &str = "No GPU adapter drew: only what the CPU can draw was compared, and times are those of a CPU \
+                          from call to picture.";
 const SOFTWARE_ADAPTER: &str = "The adapter is a software GPU, which runs on the CPU. Its errors are close to a real \
                                 GPU's; its times are not, and even their order may differ there.";
 const EIGHT_BITS: &str = "Times of 8 bits are those of 16 bits, rounded again.";
-const WHOLE_CARDS: &str = "Shadow volumes ignore alpha masks, so a leaf casts the shadow of its whole card: part of their \
-                           error is that.";
-const HARD: &str = "Techniques that take the sun for a point draw no penumbras. Against the sun's disc they have errors \
-                    there however well they work. Their error against truth of the sun's centre stands beside.";
-const TIMES: &str = "Times are of a sun that moves: shadow maps and silhouettes are found anew for each frame; under a sun \
-                     that stands still they would be kept. All techniques but rays draw the same depths and surfaces. A \
-                     ray's time is the CPU's, once it is known which surface each pixel shows. Only visibility is drawn, \
-                     not the lit picture.";
+const WHOLE_CARDS: &str = "Shadow volumes ignore alpha masks, so a leaf casts the shadow of its whole card: part of \
+                           their error is that.";
+const HARD: &str = "Techniques that take the sun for a point draw no penumbras. Against the sun's disc they have \
+                    errors there however well they work. Their error against truth of the sun's centre stands beside.";
+const TIMES: &str = "Times are of a sun that moves: shadow maps and silhouettes are found anew for each frame; under \
+                     a sun that stands still they would be kept. All techniques but rays draw the same depths and \
+                     surfaces. A ray's time is the CPU's, once it is known which surface each pixel shows. Only \
+                     visibility is drawn, not the lit picture.";
 
 /// The scene, and the sets of it.
 pub(super) fn scene_entry(inputs: &ComparisonInputs) -> SceneEntry {

@@ -99,8 +99,8 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Planar {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: casters are projected flat onto \
-                     it, and nothing else is in shadow"
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: casters \
+                     are projected flat onto it, and nothing else is in shadow"
                 ),
                 None => "no surface is level: there is no ground, and nothing is in shadow".to_owned(),
             });
@@ -126,8 +126,8 @@ impl Technique for ShadowMaps<'_> {
         if settings.variant == Variant::Ground {
             lines.push(match self.renderer.ground_height_m() {
                 Some(height_m) => format!(
-                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: it reads a blurred mask of \
-                     casters, all else compares depths"
+                    "the ground is the lowest large level plane, {height_m:.3} m above the scene's middle: it reads a \
+                     blurred mask of casters, all else compares depths"
                 ),
                 None => "no surface is level: there is no ground, and all compare depths".to_owned(),
             });

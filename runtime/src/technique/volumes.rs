@@ -91,8 +91,8 @@ impl Technique for Volumes<'_> {
         let casters = self.renderer.caster_counts();
         let mut lines = vec![
             format!(
-                "casters: {} triangles in {} casters; {} solid bodies ({} of them inside out), {} open ones; {} open edges, {} \
-                 edges of three triangles or more",
+                "casters: {} triangles in {} casters; {} solid bodies ({} of them inside out), {} open ones; {} open \
+                 edges, {} edges of three triangles or more",
                 casters.triangles,
                 casters.casters,
                 casters.solid_bodies + casters.turned_bodies,
@@ -102,8 +102,8 @@ impl Technique for Volumes<'_> {
                 casters.crowded_edges
             ),
             format!(
-                "solid bodies extrude silhouettes of what faces the light, open ones of every triangle, and {} casters that share \
-                 next to no edges a prism a triangle",
+                "solid bodies extrude silhouettes of what faces the light, open ones of every triangle, and {} \
+                 casters that share next to no edges a prism a triangle",
                 casters.soups
             ),
         ];
@@ -116,8 +116,8 @@ impl Technique for Volumes<'_> {
         for light in &self.renderer.report().lights {
             let plan = &light.plan;
             lines.push(format!(
-                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted in front of the \
-                 surface, {} behind it ({} without caps); {} triangles in {}",
+                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted in \
+                 front of the surface, {} behind it ({} without caps); {} triangles in {}",
                 light.light,
                 plan.casters,
                 plan.casting_nothing,
@@ -127,12 +127,16 @@ impl Technique for Volumes<'_> {
                 plan.z_fail,
                 plan.without_caps,
                 light.triangles,
-                if light.runs == 1 { "one run".into() } else { format!("{} runs, since more than 255 may overlap", light.runs) }
+                if light.runs == 1 {
+                    "one run".into()
+                } else {
+                    format!("{} runs, since more than 255 may overlap", light.runs)
+                }
             ));
             if plan.replaced > 0 && self.settings.mode == Mode::ZPass {
                 lines.push(format!(
-                    "{}: z-pass would be wrong for {} casters (the eye may be in their volumes, or a cap shows): they are \
-                     counted behind the surface instead",
+                    "{}: z-pass would be wrong for {} casters (the eye may be in their volumes, or a cap shows): they \
+                     are counted behind the surface instead",
                     light.light, plan.replaced
                 ));
             }

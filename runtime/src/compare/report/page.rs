@@ -104,8 +104,9 @@ fn plots(report: &Report) -> String {
     };
     format!(
         "<h2>Error against time and bytes</h2>\n<p>The nearer to the lower left corner, the better.</p>\n\
-         <div class=\"side-by-side\">\n<figure>{}<figcaption>Time per frame, and the error that is left. Time to bake is not \
-         included. Rays are left out: theirs is the CPU's time, without finding the surfaces.</figcaption></figure>\n\
+         <div class=\"side-by-side\">\n<figure>{}<figcaption>Time per frame, and the error that is left. Time to bake \
+         is not included. Rays are left out: theirs is the CPU's time, without finding the \
+         surfaces.</figcaption></figure>\n\
          <figure>{}<figcaption>Memory kept from frame to frame: baked maps, shadow maps, the buffers of shadow \
          volumes.</figcaption></figure>\n</div>\n",
         plot("Error and time", clock, &FAMILIES[..3], &|technique| technique.times.frame_ms),
