@@ -89,7 +89,8 @@ fn box_on_floor() -> Result<Scene, Anything> {
     let bytes: &[u8] = bytemuck::cast_slice(&positions);
     let json = format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
-        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"material":0}}]}}],
+        "materials":[{{"pbrMetallicRoughness":{{"baseColorFactor":[0.5,0.45,0.4,1]}}}}],
         "accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":{count},
         "min":[-2,0,-2],"max":[2,1.3,2]}}],
         "bufferViews":[{{"buffer":0,"byteLength":{length}}}],"buffers":[{{"byteLength":{length}}}]}}"#,
