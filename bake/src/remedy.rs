@@ -9,7 +9,7 @@ pub enum Setting {
     PageSize,
     /// Density of the texels, per metre.
     TexelsPerMetre,
-    /// Empty texels around every chart.
+    /// Width of the gutter around every chart.
     Padding,
     /// Bits of a stored time.
     Bits,

@@ -22,8 +22,8 @@ pub struct BakeSettings {
     pub density: Density,
     /// Edge of a square page, 64 to 16384. Larger pages pack better; some hardware stops at 8192.
     pub page_size_texels: u32,
-    /// Empty texels kept around every chart, 1 to 16. A four-texel filter needs 1; each mip level below needs twice as
-    /// many as the one above.
+    /// Width in texels of the gutter around every chart, which repeats the chart's border, 1 to 16. A four-texel filter
+    /// needs 1; each mip level below needs twice as many as the one above.
     pub padding_texels: u32,
     /// Bits of a stored time. 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the
     /// bytes.

@@ -1,10 +1,9 @@
-//! A page of ambient light: one plane of numbers for each quantity, made from estimates and encoded for storage.
+//! A page of ambient light: one plane of numbers for each quantity, made from estimates. [`crate::maps`] encodes it.
 
 use super::estimate::{Estimate, Estimates};
 use super::fill_buried::BuriedTexels;
 use super::{AmbientSettings, harmonics};
 use crate::atlas::{GutterTexel, PageSamples, PageSize};
-use crate::maps::{AmbientMaps, AmbientSide, encode_share, encode_signed};
 
 /// Ambient light of a page, as planes of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,18 +50,6 @@ impl AmbientPlanes {
     /// Every plane.
     pub fn planes_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         std::iter::once(&mut self.visibility).chain(&mut self.bent).chain(&mut self.sky)
-    }
-
-    fn encoded(&self) -> AmbientSide {
-        fn codes<const N: usize>(planes: &[Vec<f32>]) -> Option<Vec<[u16; N]>> {
-            let count = planes.first()?.len();
-            Some((0..count).map(|texel| std::array::from_fn(|k| encode_signed(planes[k][texel]))).collect())
-        }
-        AmbientSide {
-            visibility: self.visibility.iter().map(|&share| encode_share(share)).collect(),
-            bent: codes(&self.bent),
-            sky: codes(&self.sky),
-        }
     }
 }
 
@@ -119,10 +106,5 @@ impl AmbientPage {
     /// Both sides, or the one.
     pub fn sides_mut(&mut self) -> impl Iterator<Item = &mut AmbientPlanes> {
         std::iter::once(&mut self.front).chain(&mut self.back)
-    }
-
-    /// The page as it is stored.
-    pub fn encoded(&self) -> AmbientMaps {
-        AmbientMaps { front: self.front.encoded(), back: self.back.as_ref().map(AmbientPlanes::encoded) }
     }
 }

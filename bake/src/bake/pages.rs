@@ -9,7 +9,7 @@ use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
-use crate::maps::{LaneMaps, PageMaps};
+use crate::maps::{AmbientMaps, LaneMaps, PageMaps};
 use crate::progress::{BakeStage, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
@@ -106,7 +106,8 @@ impl<'a> PageBaker<'a> {
         let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
         let numbers = self.bake_ambient(index, &samples, &order)?;
         let request = self.settings.ambient.as_ref();
-        let ambient = numbers.as_ref().zip(request).map(|(page, request)| page.encoded().rounded_to(request.bits));
+        let ambient =
+            numbers.as_ref().zip(request).map(|(page, request)| AmbientMaps::of(page).rounded_to(request.bits));
         let maps = PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient };
         let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));
         Ok(BakedPage { maps, ambient_numbers, loss_map: self.loss_map.take() })

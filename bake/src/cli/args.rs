@@ -156,7 +156,7 @@ pub struct CostArgs {
     /// Texels per metre, on as many pages as that takes. [default: as dense as one page allows]
     #[arg(long, value_name = "X", value_parser = parse_density)]
     pub texels_per_metre: Option<f64>,
-    /// Empty texels around every chart, 1 to 16. [default: 2]
+    /// Width in texels of the gutter around every chart, which repeats the chart's border, 1 to 16. [default: 2]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
     pub padding: Option<u32>,
     /// Bits of a stored time. [default: 8 in draft, else 16]

@@ -4,6 +4,7 @@
 //! coefficients) have zero in the middle: a code q means `(q - 32768) / 32767`, so that zero itself is stored exactly.
 
 use super::Bits;
+use crate::ambient::{AmbientPage, AmbientPlanes};
 
 /// Ambient light of a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -26,6 +27,11 @@ pub struct AmbientSide {
 }
 
 impl AmbientMaps {
+    /// The codes of a page's numbers.
+    pub fn of(page: &AmbientPage) -> Self {
+        Self { front: AmbientSide::of(&page.front), back: page.back.as_ref().map(AmbientSide::of) }
+    }
+
     /// The same with ambient visibility as a texture of so many bits keeps it. Other numbers always have 16 bits.
     pub fn rounded_to(mut self, bits: Bits) -> Self {
         if bits == Bits::Eight {
@@ -35,6 +41,20 @@ impl AmbientMaps {
                 .for_each(|code| *code = u16::from(in_8_bits(*code)) * CODES_OF_8_BITS);
         }
         self
+    }
+}
+
+impl AmbientSide {
+    fn of(planes: &AmbientPlanes) -> Self {
+        fn codes<const N: usize>(planes: &[Vec<f32>]) -> Option<Vec<[u16; N]>> {
+            let count = planes.first()?.len();
+            Some((0..count).map(|texel| std::array::from_fn(|k| encode_signed(planes[k][texel]))).collect())
+        }
+        Self {
+            visibility: planes.visibility.iter().map(|&share| encode_share(share)).collect(),
+            bent: codes(&planes.bent),
+            sky: codes(&planes.sky),
+        }
     }
 }
 

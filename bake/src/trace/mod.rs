@@ -14,11 +14,12 @@
 //!
 //! # Where shadow rays start
 //!
-//! Two offsets keep a surface from shading itself:
+//! Three offsets decide what a surface hides from itself and its neighbours:
 //!
 //! * The **lift** ([`Tracer::lift`]) moves the origin off the surface along its normal, by a few rounding steps of the
-//!   surface's coordinates, and as far away from the triangle's edges.
-//! * The **run-up** ([`Tracer::run_up_m`]) then moves the start *back* along the ray, by half the least lift. So a
+//!   surface's coordinates.
+//! * The origin then moves as far away from the triangle's edges.
+//! * The **run-up** ([`Tracer::run_up_m`]) moves the start *back* along the ray, by half the least lift. So a
 //!   point exactly on the edge between two walls is shaded by both walls, but never by its own surface.
 
 mod alpha_mask;

@@ -4,6 +4,11 @@
 //! a turn. In it `dir(h) = (cos d cos h, cos d sin h, sin d)`, and for any vector n
 //! `n . dir(h) = A cos h + B sin h + C` with `A = n_x cos d`, `B = n_y cos d`, `C = n_z sin d`.
 //!
+//! Where that is not negative: with `R^2 = A^2 + B^2` and `(A, B) = R (cos p, sin p)` it is `R cos(h - p) + C`. If
+//! `R > |C|` it is not negative for `|h - p| <= q`, where `cos q = -C / R` and `sin q = W / R`, `W^2 = R^2 - C^2`. By
+//! the addition theorems the ends `p - q` and `p + q` are the angles of the vectors `(W B - C A, -C B - W A)` and
+//! `(-C A - W B, W A - C B)`, both times `R^2`. If `R <= |C|` the sign of C decides for all h.
+//!
 //! Hour angles are held as *diamond angles*: of a vector (x, y), `y / (|x| + |y|)` if x is not negative, else
 //! `±2 - y / (|x| + |y|)`. It grows with the angle from -2 to 2 and costs a division, no trigonometry. Only the ends of
 //! final answers are turned into times.

@@ -1,8 +1,11 @@
 //! Which part of an arc each of eight triangles occludes at a point, in `f64` and in closed form.
 //!
-//! Theory: with the corners v relative to the point, turned so that `v0 . (v1 x v2) > 0`, a triangle hides where all
-//! three `n_i . dir(h) >= 0`, `n_i = v_i x v_(i+1)`. Each is a span of hour angle whose ends are vectors in closed
-//! form; their intersection is what the triangle hides.
+//! Theory: let the corners v be relative to the point and ordered so that `D = v0 . (v1 x v2) > 0`, and let
+//! `n_i = v_i x v_(i+1)`. The corners are a basis, and by Cramer's rule `dir = (n_1 . dir v0 + n_2 . dir v1 +
+//! n_0 . dir v2) / D`. A ray along dir meets the triangle, in front of the point, exactly if all three factors are not
+//! negative: divided by their sum they are the barycentric coordinates of the hit, at a distance of D over the sum. So
+//! the triangle hides the sun where all three `n_i . dir(h) >= 0`. Each is a span of hour angle with ends in closed
+//! form (`arc.rs`); the triangle hides their intersection.
 //!
 //! Watertight: `a x b` and `b x a` are exact opposites in floating point, and every step from there to the ends of a
 //! span treats opposites alike. So the triangles on both sides of an edge end at the same number, and no gap is left.
