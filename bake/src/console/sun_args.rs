@@ -2,7 +2,7 @@
 
 use super::Failure;
 use crate::settings::SunRequest;
-use crate::sun::{Date, DayRequest, parse_place};
+use crate::sun::{Date, DayRequest, parse_place, parse_utc_offset};
 use clap::Args;
 
 /// The sun over a scene.
@@ -17,8 +17,9 @@ pub struct SunArgs {
     /// centre of the sun's disc on a level horizon, without refraction.
     #[arg(long, value_name = "YYYY-MM-DD")]
     pub date: Option<Date>,
-    /// Hours that local clocks are ahead of UTC, -12 to 14. [default: the whole hour nearest to the place]
-    #[arg(long, value_name = "H", allow_hyphen_values = true)]
+    /// Hours that local clocks are ahead of UTC, -12 to 14, as -8, 5.75 or 5:45. [default: the whole hour nearest to
+    /// the place]
+    #[arg(long, value_name = "H", value_parser = parse_utc_offset, allow_hyphen_values = true)]
     pub utc_offset: Option<f64>,
     /// Degrees that north is turned from -Z towards +X. [default: 0]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]

@@ -88,6 +88,22 @@ pub fn parse_place(text: &str) -> Result<[f64; 2], String> {
     Ok([number(latitude)?, number(longitude)?])
 }
 
+/// Parses hours ahead of UTC: `5.75`, `5:45`, `+05:45`, `-3:30`.
+pub fn parse_utc_offset(text: &str) -> Result<f64, String> {
+    let wrong = || format!("`{text}` is no offset from UTC: give hours, as -8, 5.75 or 5:45");
+    let Some((hours, minutes)) = text.split_once(':') else {
+        return text.parse().ok().filter(|h: &f64| h.is_finite()).ok_or_else(wrong);
+    };
+    let (sign, hours) = match hours.strip_prefix('-') {
+        Some(hours) => (-1.0, hours),
+        None => (1.0, hours.strip_prefix('+').unwrap_or(hours)),
+    };
+    let digits = |text: &str| text.len() <= 2 && text.bytes().all(|b| b.is_ascii_digit());
+    let [hours, minutes] = [hours, minutes].map(|text| text.parse::<u32>().ok().filter(|_| digits(text)));
+    let (hours, minutes) = hours.zip(minutes.filter(|&m| m < 60)).ok_or_else(wrong)?;
+    Ok(sign * (f64::from(hours) + f64::from(minutes) / 60.0))
+}
+
 /// Why a request is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DayError {
@@ -98,7 +114,7 @@ pub enum DayError {
     #[error("longitude {0} is off the globe: give degrees east in -180..=180")]
     Longitude(f64),
     /// Not a time zone.
-    #[error("a UTC offset of {0} hours does not exist: give hours ahead of UTC in -12..=14, for instance 5.75")]
+    #[error("a UTC offset of {0} hours does not exist: give hours ahead of UTC in -12..=14, for instance 5.75 or 5:45")]
     UtcOffset(f64),
     /// Not an angle.
     #[error("north turned by {0} degrees is no direction: give a finite angle")]

@@ -25,7 +25,7 @@ mod tests;
 pub use arc::{HalfSpaceIntervals, SunArc};
 pub use clock::{ClockError, DAY_MIN, Date, DateError, YEARS, clock_text, parse_clock, parse_window};
 pub use compass::Compass;
-pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day, parse_place};
+pub use day::{DayError, DayOutcome, DayRequest, FIT_ENOUGH_DEG, day, parse_place, parse_utc_offset};
 pub use ephemeris::EphemerisError;
 pub use keyed::{KeyedError, parse_keyed};
 pub(crate) use keys::key_times;

@@ -123,7 +123,7 @@ fn missing_files_are_named() {
 
 #[test]
 fn invalid_options_are_refused() {
-    let cases: [(&[&str], i32, &[&str]); 26] = [
+    let cases: [(&[&str], i32, &[&str]); 27] = [
         (&["--place", "91,0"], 1, &["latitude 91", "-90..=90"]),
         (&["--place", "0,181"], 1, &["longitude 181", "-180..=180"]),
         (&["--place", "nan,0"], 1, &["not a place", "48.2,16.4"]),
@@ -132,6 +132,7 @@ fn invalid_options_are_refused() {
         (&["--date", "2026-13-01"], 1, &["does not exist", "months"]),
         (&["--date", "tomorrow"], 1, &["YYYY-MM-DD"]),
         (&["--utc-offset", "15"], 1, &["UTC offset of 15", "-12..=14"]),
+        (&["--utc-offset", "Vienna"], 1, &["`Vienna`", "5:45"]),
         (&["--window", "25:00-26:00"], 1, &["HH:MM"]),
         (&["--window", "22:00-23:00"], 1, &["below the horizon", "it is up from 04:36", "window"]),
         (&["--only", "sun"], 1, &["nothing to bake", "intervals", "ao"]),

@@ -1,6 +1,6 @@
 //! Hard case B2: polar day and night, poles, the date line, leap days, clocks far from the sun, windows.
 
-use super::super::{Compass, DayError, DayOutcome, DayRequest, day, ephemeris::Ephemeris};
+use super::super::{Compass, DayError, DayOutcome, DayRequest, day, ephemeris::Ephemeris, parse_utc_offset};
 use super::Random;
 use super::days_follow_the_ephemeris::request;
 use super::days_follow_trigonometry::path;
@@ -201,5 +201,18 @@ fn requests_off_the_globe_are_refused_with_what_to_give() {
     assert!(message.contains("at least a second apart"), "{message}");
     for value in [f64::NAN, f64::INFINITY] {
         assert!(matches!(day(&DayRequest { north_deg: value, ..good.clone() }), Err(DayError::North(_))));
+    }
+}
+
+#[test]
+fn offsets_from_utc_are_hours_or_hours_and_minutes() {
+    let good =
+        [("5:45", 5.75), ("+05:30", 5.5), ("-3:30", -3.5), ("-0:30", -0.5), ("5.75", 5.75), ("-8", -8.0), ("0", 0.0)];
+    for (text, hours) in good {
+        assert_eq!(parse_utc_offset(text), Ok(hours), "{text}");
+    }
+    for text in ["", ":", "5:", ":45", "5:60", "5:4x", "5:-45", "--5:45", "005:45", "NaN", "inf", "CET", "5:45:00"] {
+        let message = parse_utc_offset(text).expect_err(text);
+        assert!(message.contains(&format!("`{text}`")) && message.contains("5:45"), "{message}");
     }
 }
