@@ -8,10 +8,10 @@
 use super::{BinaryNode, Tracer};
 use glam::{DMat3, Vec3};
 
-/// Number of lanes: boxes in a node, triangles in a leaf.
+/// Most boxes in a node, and most triangles in a leaf.
 pub(crate) const WIDTH: usize = 16;
 
-/// Sixteen points, by axis and lane.
+/// Sixteen points, by axis and index.
 pub(crate) type Points = [[f32; WIDTH]; 3];
 
 /// The hierarchy, with boxes along axes chosen by the caller. The first node is the root; empty if there are no
@@ -21,7 +21,7 @@ pub(crate) struct Bvh16 {
     pub leaves: Vec<Bvh16Leaf>,
 }
 
-/// Up to sixteen boxes. Lanes from `count` on are invalid.
+/// Up to sixteen boxes. Those from `count` on are invalid.
 #[derive(Default)]
 pub(crate) struct Bvh16Node {
     pub centre: Points,
@@ -30,7 +30,7 @@ pub(crate) struct Bvh16Node {
     pub count: usize,
 }
 
-/// Up to sixteen triangles. Lanes from `count` on are invalid.
+/// Up to sixteen triangles. Those from `count` on are invalid.
 #[derive(Default)]
 pub(crate) struct Bvh16Leaf {
     pub corners: [Points; 3],
@@ -63,15 +63,15 @@ impl Default for Child {
 #[inline(always)]
 pub(crate) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
-        let lane = (mask != 0).then(|| mask.trailing_zeros() as usize);
+        let index = (mask != 0).then(|| mask.trailing_zeros() as usize);
         mask &= mask.wrapping_sub(1);
-        lane
+        index
     })
 }
 
-/// A bit set of the first `count` lanes.
+/// A bit set of the first `count` bits.
 #[inline(always)]
-pub(crate) fn first_lanes(count: usize) -> u32 {
+pub(crate) fn first_bits(count: usize) -> u32 {
     (1 << count) - 1
 }
 
@@ -92,16 +92,16 @@ impl Bvh16 {
     /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by
     /// `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {
-        let turned = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
+        let rotated = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
         let bounds = |triangle| {
-            let [a, b, c] = turned(triangle);
+            let [a, b, c] = rotated(triangle);
             [a.min(b).min(c) - padding, a.max(b).max(c) + padding]
         };
         let boxes: Vec<[Vec3; 2]> = tracer.corners().iter().map(bounds).collect();
         let (tree, order) = super::binary_hierarchy(&boxes);
         let mut collapse = Collapse {
             triangles: triangles_below(&tree),
-            corners: &|id| turned(&tracer.corners()[id as usize]),
+            corners: &|id| rotated(&tracer.corners()[id as usize]),
             tree: &tree,
             order: &order,
             bvh: Self { nodes: Vec::new(), leaves: Vec::new() },
@@ -148,20 +148,20 @@ impl Collapse<'_> {
         }
         while let Some((binary, parent)) = pending.pop() {
             let index = self.bvh.nodes.len();
-            if let Some((parent, lane)) = parent {
-                self.bvh.nodes[parent].child[lane] = Child::Node(index as u32);
+            if let Some((parent, child)) = parent {
+                self.bvh.nodes[parent].child[child] = Child::Node(index as u32);
             }
             let members = self.open(binary);
             let mut node = Bvh16Node { count: members.len(), ..Bvh16Node::default() };
-            for (lane, &member) in members.iter().enumerate() {
+            for (child, &member) in members.iter().enumerate() {
                 let BinaryNode { bounds: [low, high], .. } = self.tree[member as usize];
                 for k in 0..3 {
-                    node.centre[k][lane] = 0.5 * (low[k] + high[k]);
-                    node.half[k][lane] = 0.5 * (high[k] - low[k]);
+                    node.centre[k][child] = 0.5 * (low[k] + high[k]);
+                    node.half[k][child] = 0.5 * (high[k] - low[k]);
                 }
                 match self.is_leaf(member) {
-                    true => node.child[lane] = self.leaf(member),
-                    false => pending.push((member, Some((index, lane)))),
+                    true => node.child[child] = self.leaf(member),
+                    false => pending.push((member, Some((index, child)))),
                 }
             }
             self.bvh.nodes.push(node);

@@ -1,18 +1,18 @@
 //! Traces packets of up to sixteen incoherent rays through a 16-wide BVH.
 //!
-//! Theory: rays over a hemisphere have little in common, so SIMD over rays wastes lanes. Instead, one ray is tested
+//! Theory: rays over a hemisphere have little in common, so SIMD over rays wastes its width. Instead, one ray is tested
 //! against all children of a wide node at once (Wald, Benthin and Boulos, "Getting rid of packets", *IEEE Symposium on
 //! Interactive Ray Tracing*, 2008). Rays of a packet share the traversal: sixteen rays of roughly equal direction meet
 //! mostly the same nodes, so each node is loaded, and its children are pushed, once for all of them.
 //!
 //! Practice: a stack entry is a node and the set of rays that met its box. Each of these rays is tested against the
-//! node's children separately, so no lane is spent on a ray that did not meet the node.
+//! node's children separately, so no work is spent on a ray that did not meet the node.
 //!
 //! Precision: boxes and triangles are tested in `f32`, conservatively: boxes are enlarged, and a triangle is a
 //! candidate if the ray passes close to it (`ray_f32.rs`). Candidates are then tested in `f64`, with the test of
 //! [`Tracer`]. So results equal the tracer's, are watertight at shared edges, and do not depend on the SIMD width.
 
-use super::bvh16::{Bvh16, Child, WIDTH, bits, first_lanes, push_far_first};
+use super::bvh16::{Bvh16, Child, WIDTH, bits, first_bits, push_far_first};
 use super::ray_f32::{BOX_PADDING, RayF32, leaf_met, node_met};
 use super::{Direction, Hit, Occluder, Tracer};
 use fearless_simd::{Level, Simd, dispatch, f32x16, prelude::*, u32x16};
@@ -95,7 +95,7 @@ impl<'a> PacketTracer<'a> {
                 scratch.rays.iter().take_while(|ray| ray.own != id && self.intersect(ray, id).is_some()).count();
             occluded = (1u32 << first) - 1;
         }
-        let open = first_lanes(queries.len()) & !occluded;
+        let open = first_bits(queries.len()) & !occluded;
         if open != 0 && !self.bvh.nodes.is_empty() {
             let level = self.level;
             *guess = None;
@@ -169,18 +169,18 @@ impl<'a> PacketTracer<'a> {
                         met |= children[ray];
                     }
                     let of_rays = u32x16::from_slice(simd, children);
-                    for lane in bits(met) {
-                        let bit = u32x16::splat(simd, 1 << lane);
+                    for child in bits(met) {
+                        let bit = u32x16::splat(simd, 1 << child);
                         let met_by = (of_rays & bit).simd_eq(bit).to_bitmask() as u32;
-                        shared.push((node.child[lane], met_by));
+                        shared.push((node.child[child], met_by));
                     }
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let ray = &rays[index];
-                        for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, f32::INFINITY)) {
-                            let id = leaf.ids[lane];
+                        for triangle in bits(leaf_met(simd, leaf, &ray.ray_f32, f32::INFINITY)) {
+                            let id = leaf.ids[triangle];
                             if id != ray.own && self.intersect(ray, id).is_some() {
                                 *found = Some(Occluder(id));
                                 active &= !(1 << index);
@@ -209,7 +209,7 @@ impl<'a> PacketTracer<'a> {
         let PacketScratch { rays, sorted, children, near, .. } = scratch;
         let mut reach = [reach; PACKET];
         sorted.clear();
-        sorted.push(QueuedChild { child: Child::ROOT, met_by: first_lanes(rays.len()), near: 0.0 });
+        sorted.push(QueuedChild { child: Child::ROOT, met_by: first_bits(rays.len()), near: 0.0 });
         while let Some(QueuedChild { child, met_by, near: least }) = sorted.pop() {
             let asking = met_by;
             match child {
@@ -229,13 +229,13 @@ impl<'a> PacketTracer<'a> {
                     nearest.store_slice(near);
                     let of_rays = u32x16::from_slice(simd, children);
                     let first = sorted.len();
-                    for lane in bits(met) {
-                        let bit = u32x16::splat(simd, 1 << lane);
+                    for child in bits(met) {
+                        let bit = u32x16::splat(simd, 1 << child);
                         let met_by = (of_rays & bit).simd_eq(bit).to_bitmask() as u32;
                         push_far_first(
                             sorted,
                             first,
-                            QueuedChild { child: node.child[lane], met_by, near: near[lane] },
+                            QueuedChild { child: node.child[child], met_by, near: near[child] },
                             |pending| pending.near,
                         );
                     }
@@ -244,8 +244,8 @@ impl<'a> PacketTracer<'a> {
                     let leaf = &self.bvh.leaves[leaf as usize];
                     for index in bits(asking) {
                         let (ray, reach, found) = (&rays[index], &mut reach[index], &mut found[index]);
-                        for lane in bits(leaf_met(simd, leaf, &ray.ray_f32, *reach as f32 * FAR_SLACK)) {
-                            let id = leaf.ids[lane];
+                        for triangle in bits(leaf_met(simd, leaf, &ray.ray_f32, *reach as f32 * FAR_SLACK)) {
+                            let id = leaf.ids[triangle];
                             if id != ray.own
                                 && let Some((distance, barycentric)) = self.intersect(ray, id)
                                 && is_nearer((id, distance), found, *reach)

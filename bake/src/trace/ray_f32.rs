@@ -4,7 +4,7 @@
 //! tested again in `f64`.
 
 use super::Direction;
-use super::bvh16::{Bvh16Leaf, Bvh16Node, WIDTH, first_lanes};
+use super::bvh16::{Bvh16Leaf, Bvh16Node, WIDTH, first_bits};
 use fearless_simd::{Simd, f32x16, prelude::*};
 use glam::DVec3;
 
@@ -54,7 +54,7 @@ pub(super) fn node_met<S: Simd>(simd: S, node: &Bvh16Node, ray: &RayF32, far: f3
     let starts = enters.max(f32x16::splat(simd, 0.0));
     let met = starts.simd_le(leaves.min(f32x16::splat(simd, far)));
     starts.store_slice(near);
-    met.to_bitmask() as u32 & first_lanes(node.count)
+    met.to_bitmask() as u32 & first_bits(node.count)
 }
 
 /// The set of a leaf's triangles that a ray may hit before `far`.
@@ -88,5 +88,5 @@ pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, ray: &RayF32, far: f3
     let nearest = a_z.min(b_z).min(c_z);
     let padding = f32x16::splat(simd, BOX_PADDING);
     let ahead = farthest.simd_ge(-padding) & nearest.simd_le(padding + far);
-    (passed & ahead).to_bitmask() as u32 & first_lanes(leaf.count)
+    (passed & ahead).to_bitmask() as u32 & first_bits(leaf.count)
 }

@@ -47,7 +47,7 @@ fn packets_are_occluded_where_single_rays_are() {
                 let mut guess = None;
                 for _ in 0..2 {
                     let occluded = packet_tracer.occluded(&mut PacketScratch::default(), &queries[..count], &mut guess);
-                    assert_eq!(occluded, expected & first_lanes(count));
+                    assert_eq!(occluded, expected & first_bits(count));
                 }
             }
         }

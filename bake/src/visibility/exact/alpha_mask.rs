@@ -20,8 +20,8 @@ use smallvec::SmallVec;
 /// An alpha-masked triangle, seen from a point along one lane.
 pub(super) struct MaskedTriangleView<'a> {
     pub mask: MaskedTriangle<'a>,
-    /// Which triangle of a packet it is, and along which lane it is seen.
-    pub slot: usize,
+    /// Which triangle of a batch it is, and along which lane it is seen.
+    pub index_in_batch: usize,
     pub lane: usize,
     /// For each corner, the normal of the opposite edge with the declination worked in: its product with
     /// (cos h, sin h, 1) is the corner's weight. Where the triangle is pierced all have one sign, the positive one
@@ -35,7 +35,7 @@ impl<'a> MaskedTriangleView<'a> {
     /// From the corners relative to the point, arc frame.
     pub fn new(
         mask: MaskedTriangle<'a>,
-        [slot, lane]: [usize; 2],
+        [index_in_batch, lane]: [usize; 2],
         [a, b, c]: [DVec3; 3],
         declination: Declination,
     ) -> Self {
@@ -44,7 +44,7 @@ impl<'a> MaskedTriangleView<'a> {
         let weights = normals.map(|n| n * scale);
         let blend = |values: [f64; 3]| weights[0] * values[0] + weights[1] * values[1] + weights[2] * values[2];
         let sums = [mask.texel_uvs.map(|uv| uv.x), mask.texel_uvs.map(|uv| uv.y), [1.0; 3]].map(blend);
-        Self { mask, slot, lane, weights, sums }
+        Self { mask, index_in_batch, lane, weights, sums }
     }
 
     /// 1 if weights are positive on a span on which the triangle is pierced, else -1. It depends on the side that the

@@ -16,7 +16,7 @@
 
 use super::arc::{ArcFrame, Declination, of_diamond};
 use super::cover::Query;
-use crate::trace::bvh16::{Bvh16Leaf, Bvh16Node, Points, first_lanes};
+use crate::trace::bvh16::{Bvh16Leaf, Bvh16Node, Points, first_bits};
 use fearless_simd::{f32x16, mask32x16, prelude::*};
 use glam::DMat3;
 use smallvec::SmallVec;
@@ -132,10 +132,10 @@ pub(super) fn node_met<S: Simd>(simd: S, node: &Bvh16Node, lit: &LitSpans, near2
     simd.vectorize(
         #[inline(always)]
         || {
-            let boxes = turned(simd, node, lit);
+            let boxes = rotated(simd, node, lit);
             let (met, near) = met(simd, &boxes, lit);
             near.store_slice(near2);
-            met.to_bitmask() as u32 & first_lanes(node.count)
+            met.to_bitmask() as u32 & first_bits(node.count)
         },
     )
 }
@@ -148,7 +148,7 @@ pub(super) fn leaf_met<S: Simd>(simd: S, leaf: &Bvh16Leaf, lit: &LitSpans) -> u3
             let a = corner(simd, &leaf.corners[0], lit);
             let b = corner(simd, &leaf.corners[1], lit);
             let c = corner(simd, &leaf.corners[2], lit);
-            triangles_met(simd, [a, b, c], lit).to_bitmask() as u32 & first_lanes(leaf.count)
+            triangles_met(simd, [a, b, c], lit).to_bitmask() as u32 & first_bits(leaf.count)
         },
     )
 }
@@ -161,7 +161,7 @@ struct Boxes<S: Simd> {
 
 /// A node's boxes in the arc's frame.
 #[inline(always)]
-fn turned<S: Simd>(simd: S, node: &Bvh16Node, lit: &LitSpans) -> Boxes<S> {
+fn rotated<S: Simd>(simd: S, node: &Bvh16Node, lit: &LitSpans) -> Boxes<S> {
     let x = f32x16::from_slice(simd, &node.centre[0]) - lit.centre[0];
     let y = f32x16::from_slice(simd, &node.centre[1]) - lit.centre[1];
     let z = f32x16::from_slice(simd, &node.centre[2]) - lit.centre[2];

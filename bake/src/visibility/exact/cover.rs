@@ -5,8 +5,8 @@ use super::arc::ArcFrame;
 use super::follow::{Follower, SolidSpan};
 use super::gaps::Gaps;
 use super::near::hidden_near;
-use super::seeds::SeedPackets;
-use super::solve::{HiddenSpans, Packet, hide};
+use super::seeds::SeedBatches;
+use super::solve::{HiddenSpans, TriangleBatch, hide};
 use crate::trace::Tracer;
 use crate::trace::bvh16::bits;
 use fearless_simd::Simd;
@@ -38,9 +38,9 @@ pub(super) struct GapCloser<'a> {
     pub tracer: &'a Tracer,
     frame: &'a ArcFrame,
     /// Triangles that closed gaps at the previous point: solid ones, and alpha-masked ones.
-    seeds: [SeedPackets; 2],
+    seeds: [SeedBatches; 2],
     /// Triangles that close gaps at this point.
-    next_seeds: [SeedPackets; 2],
+    next_seeds: [SeedBatches; 2],
     /// Memory for one answer a lane.
     hidden: Vec<HiddenSpans>,
     follower: Follower<'a>,
@@ -58,23 +58,23 @@ impl<'a> GapCloser<'a> {
         }
     }
 
-    /// Rotates the triangles of a packet into the arc's frame and closes what they occlude. True if they close
+    /// Rotates the triangles of a batch into the arc's frame and closes what they occlude. True if they close
     /// anything.
-    pub fn turn_and_close<S: Simd>(&mut self, simd: S, packet: &mut Packet, query: &mut Query) -> bool {
-        packet.turn(simd, &self.frame.arc_from_bake);
-        self.close(simd, packet, query)
+    pub fn rotate_and_close<S: Simd>(&mut self, simd: S, batch: &mut TriangleBatch, query: &mut Query) -> bool {
+        batch.rotate(simd, &self.frame.arc_from_bake);
+        self.close(simd, batch, query)
     }
 
     /// Closes gaps with the triangles of the previous point: solid ones, then alpha-masked ones, which cost more.
     /// Returns how many were tested.
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
         std::mem::swap(&mut self.seeds, &mut self.next_seeds);
-        self.next_seeds.iter_mut().for_each(SeedPackets::clear);
+        self.next_seeds.iter_mut().for_each(SeedBatches::clear);
         let seeds = std::mem::take(&mut self.seeds);
         let mut triangles = 0;
-        for packet in seeds.iter().flat_map(SeedPackets::packets) {
-            triangles += packet.count as u64;
-            if self.close(simd, packet, query) && query.is_done() {
+        for batch in seeds.iter().flat_map(SeedBatches::batches) {
+            triangles += batch.count as u64;
+            if self.close(simd, batch, query) && query.is_done() {
                 break;
             }
         }
@@ -83,54 +83,54 @@ impl<'a> GapCloser<'a> {
     }
 
     /// Closes what some triangles occlude, and keeps those that closed anything. True if any did.
-    pub fn close<S: Simd>(&mut self, simd: S, packet: &Packet, query: &mut Query) -> bool {
-        let Packet { corners, ids, count } = packet;
+    pub fn close<S: Simd>(&mut self, simd: S, batch: &TriangleBatch, query: &mut Query) -> bool {
+        let TriangleBatch { corners, ids, count } = batch;
         let run_up = self.tracer.run_up();
         let near = hide(simd, corners, query.origin, run_up * run_up, &self.frame.lanes, &query.gaps, &mut self.hidden);
         let real = (1u32 << *count) - 1;
         let mut useful = 0;
         for lane in 0..self.frame.lanes.len() {
-            for slot in bits(self.hidden[lane].mask & real & !near) {
+            for index in bits(self.hidden[lane].mask & real & !near) {
                 let hidden = &self.hidden[lane];
-                let closes = match hidden.whole(slot) {
+                let closes = match hidden.whole(index) {
                     Some([start, end]) if start >= end => false,
-                    Some(span) if !self.tracer.has_alpha_mask(ids[slot]) => query.gaps[lane].close(span),
-                    _ => self.close_pieces(packet, [slot, lane], &self.hidden[lane].pieces(slot), query),
+                    Some(span) if !self.tracer.has_alpha_mask(ids[index]) => query.gaps[lane].close(span),
+                    _ => self.close_pieces(batch, [index, lane], &self.hidden[lane].pieces(index), query),
                 };
-                useful |= u32::from(closes) << slot;
+                useful |= u32::from(closes) << index;
             }
-            for slot in bits(near & real) {
-                let corners = packet.corners_of(slot).map(|corner| corner - query.origin);
+            for index in bits(near & real) {
+                let corners = batch.corners_of(index).map(|corner| corner - query.origin);
                 let spans = hidden_near(self.frame, lane, corners, run_up);
-                useful |= u32::from(self.close_pieces(packet, [slot, lane], &spans, query)) << slot;
+                useful |= u32::from(self.close_pieces(batch, [index, lane], &spans, query)) << index;
             }
         }
         if !self.follower.is_empty() {
             self.follower.follow();
-            for &SolidSpan { slot, lane, span } in &self.follower.found {
-                useful |= u32::from(span[1] - span[0] > LEAST_SOLID && query.gaps[lane].close(span)) << slot;
+            for &SolidSpan { index_in_batch: index, lane, span } in &self.follower.found {
+                useful |= u32::from(span[1] - span[0] > LEAST_SOLID && query.gaps[lane].close(span)) << index;
             }
             self.follower.clear();
         }
-        for slot in bits(useful) {
-            let kind = usize::from(self.tracer.has_alpha_mask(ids[slot]));
-            self.next_seeds[kind].add(ids[slot], packet.corners_of(slot));
+        for index in bits(useful) {
+            let kind = usize::from(self.tracer.has_alpha_mask(ids[index]));
+            self.next_seeds[kind].add(ids[index], batch.corners_of(index));
         }
         useful != 0
     }
 
     /// Closes what a triangle occludes in several spans; an alpha-masked one is added to be followed.
-    fn close_pieces(&mut self, packet: &Packet, at: [usize; 2], spans: &[[f64; 2]], query: &mut Query) -> bool {
-        let [slot, lane] = at;
+    fn close_pieces(&mut self, batch: &TriangleBatch, at: [usize; 2], spans: &[[f64; 2]], query: &mut Query) -> bool {
+        let [index, lane] = at;
         let gaps = &mut query.gaps[lane];
-        let Some(mask) = self.tracer.mask(packet.ids[slot]) else {
+        let Some(mask) = self.tracer.mask(batch.ids[index]) else {
             return spans.iter().fold(false, |closes, &span| gaps.close(span) | closes);
         };
         let both = |span: &[f64; 2], gap: &[f64; 2]| [span[0].max(gap[0]), span[1].min(gap[1])];
         let open = spans.iter().flat_map(|span| gaps.as_slice().iter().map(move |gap| both(span, gap)));
         let mut open = open.filter(|span| span[0] < span[1]).peekable();
         if open.peek().is_some() {
-            let corners = packet.corners_of(slot).map(|corner| corner - query.origin);
+            let corners = batch.corners_of(index).map(|corner| corner - query.origin);
             self.follower.add(MaskedTriangleView::new(mask, at, corners, self.frame.lanes[lane]), open);
         }
         false

@@ -21,9 +21,16 @@ const MOST_STEPS: u32 = 65_536;
 /// A span that a triangle occludes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SolidSpan {
-    pub slot: usize,
+    pub index_in_batch: usize,
     pub lane: usize,
+    /// Diamond angles.
     pub span: [f64; 2],
+}
+
+impl SolidSpan {
+    fn of(triangle: &MaskedTriangleView, span: [f64; 2]) -> Self {
+        Self { index_in_batch: triangle.index_in_batch, lane: triangle.lane, span }
+    }
 }
 
 /// Curves to be followed, and what was found on them.
@@ -63,8 +70,7 @@ impl<'a> Follower<'a> {
                 pierced.curves(span, |curve| self.curves.push((index, curve)));
                 continue;
             }
-            let MaskedTriangleView { slot, lane, .. } = pierced;
-            let mut add = |span| self.found.push(SolidSpan { slot, lane, span });
+            let mut add = |span| self.found.push(SolidSpan::of(&pierced, span));
             match pierced.mask.uniform([0, 0]).1 {
                 Some(true) => add(span),
                 Some(false) => {}
@@ -129,7 +135,7 @@ impl<'a> Follower<'a> {
         match (verdict, walk.solid_since) {
             (Some(true), None) => walk.solid_since = Some(curve.u_of(walk.at)),
             (Some(false) | None, Some(since)) => {
-                self.found.push(SolidSpan { slot: on.slot, lane: on.lane, span: [since, curve.u_of(walk.at)] });
+                self.found.push(SolidSpan::of(on, [since, curve.u_of(walk.at)]));
                 walk.solid_since = None;
             }
             _ => {}
@@ -146,11 +152,11 @@ impl<'a> Follower<'a> {
         let axis = usize::from(crossings[0] > crossings[1]);
         let next = crossings[axis].min(curve.ends[1]);
         if let Some(since) = walk.in_part_since {
-            let add = |span| self.found.push(SolidSpan { slot: on.slot, lane: on.lane, span });
+            let add = |span| self.found.push(SolidSpan::of(on, span));
             on.solid_in_texel(walk.texel, curve.side, [since, curve.u_of(next)], add);
         }
         if next >= curve.ends[1] {
-            let solid = |since| SolidSpan { slot: on.slot, lane: on.lane, span: [since, curve.ends_u[1]] };
+            let solid = |since| SolidSpan::of(on, [since, curve.ends_u[1]]);
             self.found.extend(walk.solid_since.map(solid));
             return false;
         }

@@ -35,7 +35,7 @@
 //! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is
 //!   foliage; four curves that take turns instead of one after the other, 0.85 more.
 //! * The largest square of equal texels that lies ahead, not around: 0.9 where there is foliage.
-//! * Alpha-masked triangles solved after solid ones, and packets not copied: 0.9 in shade.
+//! * Alpha-masked triangles solved after solid ones, and batches not copied: 0.9 in shade.
 //!
 //! What did not:
 //!

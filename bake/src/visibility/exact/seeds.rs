@@ -1,34 +1,34 @@
 //! The occluders of the previous point, tested first: what occludes the sun at a texel mostly occludes it at the next.
 
-use super::solve::{LANES, Packet};
+use super::solve::{SIMD_WIDTH, TriangleBatch};
 use glam::DVec3;
 
-/// Most packets kept from one point for the next.
-const MOST_PACKETS: usize = 16;
+/// Most batches kept from one point for the next.
+const MOST_BATCHES: usize = 16;
 
-/// Triangles in packets, in the order in which they closed gaps.
+/// Triangles in batches, in the order in which they closed gaps.
 #[derive(Default)]
-pub(super) struct SeedPackets {
-    packets: Vec<Packet>,
+pub(super) struct SeedBatches {
+    batches: Vec<TriangleBatch>,
     count: usize,
 }
 
-impl SeedPackets {
-    /// Adds a triangle, given by its corners in the arc's frame; beyond [`MOST_PACKETS`] packets, triangles are
+impl SeedBatches {
+    /// Adds a triangle, given by its corners in the arc's frame; beyond [`MOST_BATCHES`] batches, triangles are
     /// dropped.
     pub fn add(&mut self, id: u32, corners: [DVec3; 3]) {
-        let is_full = self.packets[..self.count].last().is_none_or(|packet| packet.count == LANES);
-        if is_full && self.count == MOST_PACKETS {
+        let is_full = self.batches[..self.count].last().is_none_or(|batch| batch.count == SIMD_WIDTH);
+        if is_full && self.count == MOST_BATCHES {
             return;
         }
         if is_full {
-            if self.packets.len() == self.count {
-                self.packets.push(Packet::default());
+            if self.batches.len() == self.count {
+                self.batches.push(TriangleBatch::default());
             }
-            self.packets[self.count].count = 0;
+            self.batches[self.count].count = 0;
             self.count += 1;
         }
-        self.packets[self.count - 1].push(id, corners);
+        self.batches[self.count - 1].push(id, corners);
     }
 
     /// Removes all of them.
@@ -37,7 +37,7 @@ impl SeedPackets {
     }
 
     /// The triangles.
-    pub fn packets(&self) -> &[Packet] {
-        &self.packets[..self.count]
+    pub fn batches(&self) -> &[TriangleBatch] {
+        &self.batches[..self.count]
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! Watertight: `a x b` and `b x a` are exact opposites in floating point, and every step from there to the ends of a
 //! span treats opposites alike. So the triangles on both sides of an edge end at the same number, and no gap is left.
-//! That holds because corners are turned into the arc's frame by one sequence of operations wherever they are, and
+//! That holds because corners are rotated into the arc's frame by one sequence of operations wherever they are, and
 //! because nothing is fused: additions and products round the same at every level of SIMD.
 //!
 //! Triangles whose plane is within the run-up of shadow rays are handled in `near.rs`, alpha-masked ones in
@@ -22,26 +22,26 @@ use glam::{DMat3, DVec3, Vec3};
 use smallvec::SmallVec;
 
 /// Triangles solved at once.
-pub(super) const LANES: usize = 8;
+pub(super) const SIMD_WIDTH: usize = 8;
 
-/// CornerLanes of eight triangles: by corner, axis and triangle.
-pub(super) type CornerLanes = [[[f64; LANES]; 3]; 3];
+/// Corners of eight triangles: by corner, axis and triangle.
+pub(super) type BatchCorners = [[[f64; SIMD_WIDTH]; 3]; 3];
 
 /// Up to eight triangles, corners in the arc's frame.
 #[derive(Default, Clone)]
-pub(super) struct Packet {
-    pub corners: CornerLanes,
-    pub ids: [u32; LANES],
+pub(super) struct TriangleBatch {
+    pub corners: BatchCorners,
+    pub ids: [u32; SIMD_WIDTH],
     pub count: usize,
 }
 
-impl Packet {
+impl TriangleBatch {
     /// Adds a triangle; there must be room.
     pub fn push(&mut self, id: u32, corners: [DVec3; 3]) {
         self.ids[self.count] = id;
-        for (lanes, corner) in self.corners.iter_mut().zip(corners) {
-            for (lane, value) in lanes.iter_mut().zip(corner.to_array()) {
-                lane[self.count] = value;
+        for (axes, corner) in self.corners.iter_mut().zip(corners) {
+            for (values, value) in axes.iter_mut().zip(corner.to_array()) {
+                values[self.count] = value;
             }
         }
         self.count += 1;
@@ -49,19 +49,19 @@ impl Packet {
 
     /// Adds a triangle, not yet in the arc's frame; there must be room.
     #[inline]
-    pub fn push_unturned(&mut self, id: u32, corners: &[Vec3; 3]) {
+    pub fn push_unrotated(&mut self, id: u32, corners: &[Vec3; 3]) {
         self.ids[self.count] = id;
-        for (lanes, corner) in self.corners.iter_mut().zip(corners) {
-            for (lane, value) in lanes.iter_mut().zip(corner.to_array()) {
-                lane[self.count] = f64::from(value);
+        for (axes, corner) in self.corners.iter_mut().zip(corners) {
+            for (values, value) in axes.iter_mut().zip(corner.to_array()) {
+                values[self.count] = f64::from(value);
             }
         }
         self.count += 1;
     }
 
-    /// Turns all triangles into the arc's frame. Every corner goes through here, so that triangles which share it agree
-    /// about it exactly.
-    pub fn turn<S: Simd>(&mut self, simd: S, rotation: &DMat3) {
+    /// Rotates all triangles into the arc's frame. Every corner goes through here, so that triangles which share it
+    /// agree about it exactly.
+    pub fn rotate<S: Simd>(&mut self, simd: S, rotation: &DMat3) {
         simd.vectorize(
             #[inline(always)]
             || {
@@ -69,9 +69,9 @@ impl Packet {
                     let x = f64x8::from_slice(simd, &corner[0]);
                     let y = f64x8::from_slice(simd, &corner[1]);
                     let z = f64x8::from_slice(simd, &corner[2]);
-                    for (k, lanes) in corner.iter_mut().enumerate() {
-                        let turned = x * rotation.x_axis[k] + y * rotation.y_axis[k] + z * rotation.z_axis[k];
-                        turned.store_slice(lanes);
+                    for (k, values) in corner.iter_mut().enumerate() {
+                        let rotated = x * rotation.x_axis[k] + y * rotation.y_axis[k] + z * rotation.z_axis[k];
+                        rotated.store_slice(values);
                     }
                 }
             },
@@ -79,8 +79,8 @@ impl Packet {
     }
 
     /// A triangle's corners.
-    pub fn corners_of(&self, slot: usize) -> [DVec3; 3] {
-        self.corners.each_ref().map(|[x, y, z]| DVec3::new(x[slot], y[slot], z[slot]))
+    pub fn corners_of(&self, index: usize) -> [DVec3; 3] {
+        self.corners.each_ref().map(|[x, y, z]| DVec3::new(x[index], y[index], z[index]))
     }
 }
 
@@ -89,23 +89,23 @@ impl Packet {
 pub(super) struct HiddenSpans {
     /// Bit set of those that occlude something.
     pub mask: u32,
-    pub low: [f64; LANES],
-    pub high: [f64; LANES],
-    /// Bit set of those whose span has up to three holes, given by `cuts`.
+    pub low: [f64; SIMD_WIDTH],
+    pub high: [f64; SIMD_WIDTH],
+    /// Bit set of those whose span has up to three holes, given by `holes`.
     pub split: u32,
     /// For each edge, the span between `low` and `high` that is not occluded, if its end is above its start.
-    pub cuts: [[[f64; LANES]; 2]; 3],
+    pub holes: [[[f64; SIMD_WIDTH]; 2]; 3],
 }
 
 impl HiddenSpans {
-    /// The span of a triangle less its cuts, if that is one span (or an empty one), as it mostly is.
+    /// The span of a triangle less its holes, if that is one span (or an empty one), as it mostly is.
     #[inline]
-    pub fn whole(&self, slot: usize) -> Option<[f64; 2]> {
-        let [mut low, mut high] = [self.low[slot], self.high[slot]];
-        if self.split & (1 << slot) == 0 {
+    pub fn whole(&self, index: usize) -> Option<[f64; 2]> {
+        let [mut low, mut high] = [self.low[index], self.high[index]];
+        if self.split & (1 << index) == 0 {
             return Some([low, high]);
         }
-        for [start, end] in self.cuts.iter().map(|cut| [cut[0][slot], cut[1][slot]]) {
+        for [start, end] in self.holes.iter().map(|hole| [hole[0][index], hole[1][index]]) {
             match start < end && start < high && end > low {
                 false => {}
                 true if start <= low => low = end,
@@ -116,12 +116,12 @@ impl HiddenSpans {
         Some([low, high])
     }
 
-    /// The span of a triangle less its cuts.
-    pub fn pieces(&self, slot: usize) -> SmallVec<[[f64; 2]; 4]> {
-        let mut left = SmallVec::from_buf_and_len([[self.low[slot], self.high[slot]]; 4], 1);
-        if self.split & (1 << slot) != 0 {
-            for cut in &self.cuts {
-                take_out(&mut left, [cut[0][slot], cut[1][slot]]);
+    /// The span of a triangle less its holes.
+    pub fn pieces(&self, index: usize) -> SmallVec<[[f64; 2]; 4]> {
+        let mut left = SmallVec::from_buf_and_len([[self.low[index], self.high[index]]; 4], 1);
+        if self.split & (1 << index) != 0 {
+            for hole in &self.holes {
+                take_out(&mut left, [hole[0][index], hole[1][index]]);
             }
         }
         left
@@ -157,7 +157,7 @@ fn take_out(spans: &mut SmallVec<[[f64; 2]; 4]>, [start, end]: [f64; 2]) {
 /// triangles whose plane is within the run-up (given squared); for these the rest of the answer is not valid.
 pub(super) fn hide<S: Simd>(
     simd: S,
-    corners: &CornerLanes,
+    corners: &BatchCorners,
     origin: DVec3,
     run_up2: f64,
     lanes: &[Declination],
@@ -176,14 +176,14 @@ pub(super) fn hide<S: Simd>(
     )
 }
 
-/// Edge normals of eight triangles, turned so that they are positive where the triangle hides.
+/// Edge normals of eight triangles, signed so that their products are positive where the triangle hides.
 struct Edges<S: Simd> {
     normals: [[f64x8<S>; 3]; 3],
     near: u32,
 }
 
 #[inline(always)]
-fn edges<S: Simd>(simd: S, corners: &CornerLanes, origin: DVec3, run_up2: f64) -> Edges<S> {
+fn edges<S: Simd>(simd: S, corners: &BatchCorners, origin: DVec3, run_up2: f64) -> Edges<S> {
     let a = relative(simd, &corners[0], origin);
     let b = relative(simd, &corners[1], origin);
     let c = relative(simd, &corners[2], origin);
@@ -198,7 +198,7 @@ fn edges<S: Simd>(simd: S, corners: &CornerLanes, origin: DVec3, run_up2: f64) -
 }
 
 #[inline(always)]
-fn relative<S: Simd>(simd: S, corner: &[[f64; LANES]; 3], origin: DVec3) -> [f64x8<S>; 3] {
+fn relative<S: Simd>(simd: S, corner: &[[f64; SIMD_WIDTH]; 3], origin: DVec3) -> [f64x8<S>; 3] {
     [
         f64x8::from_slice(simd, &corner[0]) - origin.x,
         f64x8::from_slice(simd, &corner[1]) - origin.y,
@@ -247,10 +247,10 @@ fn hide_at<S: Simd>(
         let split = is_split.to_bitmask() as u32;
         if split != 0 {
             hidden.split |= split;
-            is_split.select(span.end, after).store_slice(&mut hidden.cuts[k][0]);
-            is_split.select(span.start, before).store_slice(&mut hidden.cuts[k][1]);
+            is_split.select(span.end, after).store_slice(&mut hidden.holes[k][0]);
+            is_split.select(span.start, before).store_slice(&mut hidden.holes[k][1]);
         } else {
-            hidden.cuts[k] = [[3.0; LANES], [-3.0; LANES]];
+            hidden.holes[k] = [[3.0; SIMD_WIDTH], [-3.0; SIMD_WIDTH]];
         }
         // Most triangles occlude nothing, and one or two edges show it.
         let mut alive = low.simd_lt(low);
@@ -267,7 +267,7 @@ fn hide_at<S: Simd>(
 }
 
 /// Where eight functions `a cos h + b sin h + c` are not negative: see [`super::arc::half_space`], its scalar twin.
-struct LaneSpans<S: Simd> {
+struct EightSpans<S: Simd> {
     start: f64x8<S>,
     end: f64x8<S>,
     /// Neither everywhere nor nowhere.
@@ -275,7 +275,7 @@ struct LaneSpans<S: Simd> {
 }
 
 #[inline(always)]
-fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> LaneSpans<S> {
+fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> EightSpans<S> {
     let zero = f64x8::splat(simd, 0.0);
     let d = a * a + b * b - c * c;
     let is_part = d.simd_gt(zero);
@@ -285,7 +285,7 @@ fn span<S: Simd>(simd: S, a: f64x8<S>, b: f64x8<S>, c: f64x8<S>) -> LaneSpans<S>
     let [start, end] = diamonds(simd, [wb - ca, zero - cb - wa], [zero - ca - wb, wa - cb]);
     let far = f64x8::splat(simd, 3.0);
     let whole_start = everywhere.select(zero - far, far);
-    LaneSpans { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
+    EightSpans { start: is_part.select(start, whole_start), end: is_part.select(end, zero - whole_start), is_part }
 }
 
 /// Two diamond angles by one division: see [`super::arc::diamonds`].

@@ -2,7 +2,7 @@
 
 use super::boxes::{BoxFrames, LitSpans, leaf_met, node_met};
 use super::cover::{GapCloser, Query};
-use super::solve::{LANES, Packet};
+use super::solve::{SIMD_WIDTH, TriangleBatch};
 use crate::trace::bvh16::{Bvh16, Child, WIDTH, bits, push_far_first};
 use crate::visibility::Work;
 use fearless_simd::Simd;
@@ -22,7 +22,7 @@ pub(super) struct Walk {
     pub work: Work,
     stack: Vec<Pending>,
     /// Triangles to be solved together: solid ones, and alpha-masked ones.
-    collected: [Packet; 2],
+    collected: [TriangleBatch; 2],
 }
 
 impl Walk {
@@ -36,7 +36,7 @@ impl Walk {
         query: &mut Query,
     ) {
         self.lit.start(frames, query);
-        self.collected.iter_mut().for_each(|packet| packet.count = 0);
+        self.collected.iter_mut().for_each(|batch| batch.count = 0);
         self.stack.clear();
         self.stack.push(Pending { child: Child::ROOT, near2: 0.0 });
         let mut near2 = [0.0; WIDTH];
@@ -46,15 +46,15 @@ impl Walk {
                 Child::Node(node) => {
                     let node = &bvh.nodes[node as usize];
                     let first = self.stack.len();
-                    for lane in bits(node_met(simd, node, &self.lit, &mut near2)) {
-                        let pending = Pending { child: node.child[lane], near2: near2[lane] };
+                    for child in bits(node_met(simd, node, &self.lit, &mut near2)) {
+                        let pending = Pending { child: node.child[child], near2: near2[child] };
                         push_far_first(&mut self.stack, first, pending, |pending| pending.near2);
                     }
                 }
                 Child::Leaf(leaf) => {
                     let leaf = &bvh.leaves[leaf as usize];
-                    for lane in bits(leaf_met(simd, leaf, &self.lit)) {
-                        self.take(simd, leaf.ids[lane], closer, query);
+                    for triangle in bits(leaf_met(simd, leaf, &self.lit)) {
+                        self.take(simd, leaf.ids[triangle], closer, query);
                     }
                     if query.is_done() {
                         return;
@@ -62,8 +62,8 @@ impl Walk {
                 }
             }
         }
-        for packet in self.collected.iter_mut().filter(|packet| packet.count > 0) {
-            closer.turn_and_close(simd, packet, query);
+        for batch in self.collected.iter_mut().filter(|batch| batch.count > 0) {
+            closer.rotate_and_close(simd, batch, query);
         }
     }
 
@@ -71,11 +71,11 @@ impl Walk {
     #[inline]
     fn take<S: Simd>(&mut self, simd: S, id: u32, closer: &mut GapCloser, query: &mut Query) {
         self.work.triangles += 1;
-        let packet = &mut self.collected[usize::from(closer.tracer.has_alpha_mask(id))];
-        packet.push_unturned(id, &closer.tracer.corners()[id as usize]);
-        if packet.count == LANES {
-            let closed = closer.turn_and_close(simd, packet, query);
-            packet.count = 0;
+        let batch = &mut self.collected[usize::from(closer.tracer.has_alpha_mask(id))];
+        batch.push_unrotated(id, &closer.tracer.corners()[id as usize]);
+        if batch.count == SIMD_WIDTH {
+            let closed = closer.rotate_and_close(simd, batch, query);
+            batch.count = 0;
             if closed {
                 self.lit.update(query);
             }
