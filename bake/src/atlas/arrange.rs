@@ -178,11 +178,11 @@ impl Arrangement<'_> {
         let (padding, scales) = (self.padding_texels, what.scales());
         let limit_texels = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
         let rectangles = |contents: Vec<DVec2>| {
-            let piece = |(slot, content): (usize, DVec2)| {
+            let piece = |(instance, content): (usize, DVec2)| {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
                 let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
                 let shape = PackShape::rectangle(width, height, false);
-                vec![Piece { shape, item, kind: PieceKind::Instance(slot, content) }]
+                vec![Piece { shape, item, kind: PieceKind::Instance(instance, content) }]
             };
             contents.into_iter().enumerate().map(piece).collect()
         };
@@ -237,17 +237,17 @@ impl AtlasPlan {
                 let item = &items[piece.item];
                 let page_texels = planned.size.as_dvec2();
                 let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
-                let (slot, scale, offset) = match (piece.kind, &item.form) {
+                let (instance, scale, offset) = match (piece.kind, &item.form) {
                     (PieceKind::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
-                    (PieceKind::Instance(slot, content), MeshLayout::FileLayout(given)) => {
+                    (PieceKind::Instance(instance, content), MeshLayout::FileLayout(given)) => {
                         let scale = content / given.size;
-                        (slot, scale / page_texels, (corner - given.low * scale) / page_texels)
+                        (instance, scale / page_texels, (corner - given.low * scale) / page_texels)
                     }
-                    (PieceKind::Instance(slot, content), MeshLayout::Charts(_)) => {
-                        (slot, content / page_texels, corner / page_texels)
+                    (PieceKind::Instance(instance, content), MeshLayout::Charts(_)) => {
+                        (instance, content / page_texels, corner / page_texels)
                     }
                 };
-                placements[item.instances[slot].0] =
+                placements[item.instances[instance].0] =
                     Placement { page: page as u32, scale: scale.as_vec2(), offset: offset.as_vec2() };
             }
         }

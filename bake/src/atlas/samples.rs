@@ -184,17 +184,17 @@ fn sample_band(page_triangles: &[PageTriangle], members: &[u32], band: u32, size
         for y in touched.start.max(rows.start)..touched.end.min(rows.end) {
             let row = &mut best[((y - rows.start) * size.width) as usize..][..size.width as usize];
             for x in coverage::columns(&page_triangle.corners, y, size.width) {
-                let slot = &mut row[x as usize];
-                if slot.0 > 0.0 {
+                let texel_best = &mut row[x as usize];
+                if texel_best.0 > 0.0 {
                     let rank = page_triangle.rank(texel_centre(x, y)) as f32;
-                    if rank < slot.0 {
-                        *slot = (rank, member);
+                    if rank < texel_best.0 {
+                        *texel_best = (rank, member);
                     }
                 }
             }
         }
     }
-    let covered = best.iter().enumerate().filter(|(_, slot)| slot.0 < f32::INFINITY);
+    let covered = best.iter().enumerate().filter(|(_, best)| best.0 < f32::INFINITY);
     covered
         .map(|(index, &(_, member))| {
             let texel = rows.start * size.width + index as u32;

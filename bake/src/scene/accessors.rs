@@ -179,9 +179,9 @@ impl<'a> Reader<'a> {
             let elements =
                 self.elements(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size)?;
             for (at, bytes) in self.sparse_indices(index, sparse)?.zip(elements.iter()) {
-                let slot =
+                let entry =
                     values.get_mut(at).ok_or_else(|| wrong(index, format!("its sparse index {at} is too large")))?;
-                *slot = element(bytes, width, &convert);
+                *entry = element(bytes, width, &convert);
             }
         }
         Ok(values)

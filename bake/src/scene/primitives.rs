@@ -179,11 +179,11 @@ impl PrimitiveReader<'_> {
         let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord()).filter(|&set| set > 1);
         let first = wanted.map_or_else(|| "TEXCOORD_0".to_owned(), |set| format!("TEXCOORD_{set}"));
         let mut sets = [None, None];
-        for (slot, name) in sets.iter_mut().zip([first.as_str(), "TEXCOORD_1"]) {
+        for (set, name) in sets.iter_mut().zip([first.as_str(), "TEXCOORD_1"]) {
             let Some(&accessor) = self.primitive.attributes.get(name) else { continue };
             let values = self.reader.floats::<2>(accessor)?;
             match values.len() == count {
-                true => *slot = Some(gather(&values, used).into_iter().map(finite_texcoord).collect()),
+                true => *set = Some(gather(&values, used).into_iter().map(finite_texcoord).collect()),
                 false => {
                     log.warn("it has texture coordinates of another count than its positions; left out", self.place);
                 }

@@ -88,11 +88,11 @@ fn is_line([a, b, c]: [DVec3; 3]) -> bool {
 pub(super) fn compact(indices: &[u32], vertex_count: usize) -> (Vec<u32>, Vec<u32>) {
     let mut new_from_old = vec![u32::MAX; vertex_count];
     for &index in indices {
-        new_from_old.get_mut(index as usize).into_iter().for_each(|slot| *slot = 0);
+        new_from_old.get_mut(index as usize).into_iter().for_each(|entry| *entry = 0);
     }
     let mut used = Vec::new();
-    for (old, slot) in new_from_old.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
-        *slot = used.len() as u32;
+    for (old, entry) in new_from_old.iter_mut().enumerate().filter(|(_, entry)| **entry == 0) {
+        *entry = used.len() as u32;
         used.push(old as u32);
     }
     let indices = indices.iter().filter_map(|&index| new_from_old.get(index as usize).copied()).collect();

@@ -38,7 +38,7 @@ pub struct FrameBindings {
     /// The sky in spherical harmonics; none where no page reads it.
     pub sky: Option<wgpu::Buffer>,
     /// Entries of the group.
-    pub slots: usize,
+    pub binding_count: usize,
     frame: wgpu::Buffer,
 }
 
@@ -59,8 +59,8 @@ impl FrameBindings {
         let mut bindings = vec![(0, &frame, uniform), (1, &materials, storage)];
         bindings.extend(lamp.iter().map(|lamp| (2, lamp, uniform)));
         bindings.extend(sky.iter().map(|sky| (3, sky, uniform)));
-        let ((layout, group), slots) = (bound(gpu, &bindings), bindings.len());
-        Self { layout, group, lamp, sky, slots, frame }
+        let ((layout, group), binding_count) = (bound(gpu, &bindings), bindings.len());
+        Self { layout, group, lamp, sky, binding_count, frame }
     }
 
     /// Writes the uniforms of a frame, in the encoder's order: passes recorded earlier still see the ones before. A

@@ -11,7 +11,7 @@ pub struct PageTextures {
     pub layout: Option<wgpu::BindGroupLayout>,
     pub bind_group: Option<wgpu::BindGroup>,
     /// Entries of the group.
-    pub slots: usize,
+    pub binding_count: usize,
     /// Textures of stored times.
     pub time_textures: usize,
     /// Textures of ambient light.
@@ -43,7 +43,7 @@ impl PageTextures {
         Ok(Self {
             layout,
             bind_group,
-            slots: textures.len(),
+            binding_count: textures.len(),
             time_textures,
             ambient_textures: textures.len() - time_textures,
             bytes: textures.iter().map(|(_, texture)| texture_bytes(texture)).sum(),

@@ -5,11 +5,11 @@ use super::scene::SceneOnGpu;
 use crate::gpu::device::Gpu;
 use sunbake_shaders::{Attribute, Format, Stream, SurfaceVariant};
 
-/// A pipeline with the vertex streams that it reads, in the order of their slots.
+/// A pipeline with the vertex streams that it reads, in the order of their locations in the pipeline.
 pub struct Program {
     /// The pipeline.
     pub pipeline: wgpu::RenderPipeline,
-    /// What to bind to slots 0, 1, and so on.
+    /// What to set as vertex buffers 0, 1, and so on.
     pub streams: Vec<Stream>,
 }
 

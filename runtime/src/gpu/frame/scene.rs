@@ -80,7 +80,7 @@ impl SceneOnGpu {
     /// Counts of what is shared by all renderers.
     pub fn census(&self) -> Census {
         let page_groups = self.pages.iter().filter(|page| page.bind_group.is_some()).count();
-        let page_slots: usize = self.pages.iter().map(|page| page.slots).sum();
+        let page_bindings: usize = self.pages.iter().map(|page| page.binding_count).sum();
         let texture_groups = self.textures.bind_groups.len();
         Census {
             time_textures: self.pages.iter().map(|page| page.time_textures).sum(),
@@ -90,7 +90,7 @@ impl SceneOnGpu {
             base_color_textures: self.textures.texture_count,
             vertex_buffers: self.streams.len(),
             bind_groups: 1 + page_groups + texture_groups,
-            bindings: self.frame.slots + page_slots + BaseTextures::SLOTS * texture_groups,
+            bindings: self.frame.binding_count + page_bindings + BaseTextures::BINDINGS * texture_groups,
             draws: self.batches.len(),
             map_bytes: self.pages.iter().map(|page| page.bytes).sum(),
             ..Census::default()
@@ -118,13 +118,13 @@ impl SceneOnGpu {
         if let Some(texture) = batch.key.texture.filter(|_| wants_texture) {
             pass.set_bind_group(2, &self.textures.bind_groups[&texture], &[]);
         }
-        for (slot, stream) in program.streams.iter().enumerate() {
+        for (index, stream) in program.streams.iter().enumerate() {
             let first = match stream {
                 Stream::Position | Stream::Surface => batch.first,
                 Stream::Texture => batch.first_texture,
                 Stream::Color => batch.first_color,
             };
-            pass.set_vertex_buffer(slot as u32, self.streams[stream].slice(first * stream.stride()..));
+            pass.set_vertex_buffer(index as u32, self.streams[stream].slice(first * stream.stride()..));
         }
         pass.draw(0..batch.vertex_count, 0..1);
     }

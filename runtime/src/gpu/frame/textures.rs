@@ -17,8 +17,8 @@ pub struct BaseTextures {
 }
 
 impl BaseTextures {
-    /// Slots of the bindings of each: a texture and its sampler.
-    pub const SLOTS: usize = 2;
+    /// Bindings of each: the texture and its sampler.
+    pub const BINDINGS: usize = 2;
 
     /// Uploads the textures that some batch draws with.
     pub fn new(gpu: &Gpu, stage: &Stage, keys: &BTreeSet<TextureKey>) -> Result<Self, GpuError> {

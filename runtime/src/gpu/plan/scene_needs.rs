@@ -99,7 +99,7 @@ impl SceneNeeds {
     pub fn census(&self) -> Census {
         let textures = self.textures();
         let images: BTreeSet<usize> = textures.iter().map(|key| key.image).collect();
-        let slots = || self.pages.iter().map(PageNeeds::slots).filter(|&slots| slots > 0);
+        let bindings = || self.pages.iter().map(PageNeeds::binding_count).filter(|&bindings| bindings > 0);
         let of_frame = 2 + usize::from(self.has_lamp) + usize::from(self.has_sky());
         Census {
             time_textures: self.pages.iter().map(PageNeeds::time_textures).sum(),
@@ -108,8 +108,8 @@ impl SceneNeeds {
             sky_bindings: usize::from(self.has_sky()),
             base_color_textures: images.len(),
             vertex_buffers: self.streams().len(),
-            bind_groups: 1 + slots().count() + textures.len(),
-            bindings: of_frame + slots().sum::<usize>() + 2 * textures.len(),
+            bind_groups: 1 + bindings().count() + textures.len(),
+            bindings: of_frame + bindings().sum::<usize>() + 2 * textures.len(),
             draws: self.batches.len(),
             map_bytes: self.pages.iter().map(|page| page.bytes(self.bits)).sum(),
             ..Census::default()
@@ -130,8 +130,8 @@ impl PageNeeds {
         }
     }
 
-    /// Each texture has a slot.
-    fn slots(&self) -> usize {
+    /// Each texture is one binding.
+    fn binding_count(&self) -> usize {
         self.time_textures() + self.ambient_textures()
     }
 

@@ -64,7 +64,7 @@ impl MapReads {
     }
 
     /// Entries of the group.
-    pub fn slots(&self) -> usize {
+    pub fn binding_count(&self) -> usize {
         let flat = usize::from(self.has_flat_mask);
         flat + 2 * usize::from(self.has_depths) + usize::from(self.has_sampler()) + 2 * usize::from(self.has_mask)
     }
@@ -144,8 +144,8 @@ impl MapBindings {
         if let (Some(mask), Some(linear)) = (mask, &self.linear) {
             entries.extend([(3, TextureView(&mask.view)), (4, Sampler(linear))]);
         }
-        let slots = entries.len();
-        (bind_group(gpu, "shadow maps", &self.read_layout, entries), slots)
+        let binding_count = entries.len();
+        (bind_group(gpu, "shadow maps", &self.read_layout, entries), binding_count)
     }
 
     /// Number of matrices with a group each.

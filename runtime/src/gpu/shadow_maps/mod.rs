@@ -226,15 +226,15 @@ impl<'g> MapRenderer<'g> {
     /// What has been built so far, and the passes of the last frame.
     pub fn census(&self) -> Census {
         let scene = self.scene.census();
-        let read_slots = self.read_group.as_ref().map(|(_, slots)| *slots);
+        let read_bindings = self.read_group.as_ref().map(|(_, count)| *count);
         let views = self.bindings.view_count();
         let masks = || self.mask.iter().flatten().chain(&self.flat);
         let mask_bytes: u64 = masks().map(CasterMask::bytes).sum();
         let census = Census {
             passes: self.report.passes,
             targets: self.targets.count(),
-            bind_groups: scene.bind_groups + usize::from(read_slots.is_some()) + views,
-            bindings: scene.bindings + read_slots.unwrap_or(0) + views,
+            bind_groups: scene.bind_groups + usize::from(read_bindings.is_some()) + views,
+            bindings: scene.bindings + read_bindings.unwrap_or(0) + views,
             shadow_pipelines: self.programs.keys().filter(|key| key.is_shadow()).count(),
             shadow_maps: self.maps.as_ref().map_or(0, |maps| maps.layers.len()),
             shadow_masks: masks().count(),

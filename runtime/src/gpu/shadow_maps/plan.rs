@@ -178,15 +178,15 @@ impl MapNeeds {
         let own = scene.census();
         let (masks, mask_texels) = self.masks();
         // A flat mask needs one matrix, and no map.
-        let (groups, slots) = match self.is_shaded() {
-            true => (1 + self.maps().max(1), self.reads.slots() + self.maps().max(1)),
+        let (groups, binding_count) = match self.is_shaded() {
+            true => (1 + self.maps().max(1), self.reads.binding_count() + self.maps().max(1)),
             false => (0, 0),
         };
         let census = Census {
             passes: 2 + self.shadow_passes(),
             targets: 2,
             bind_groups: own.bind_groups + groups,
-            bindings: own.bindings + slots,
+            bindings: own.bindings + binding_count,
             shadow_pipelines: programs.iter().filter(|key| key.is_shadow()).count(),
             shadow_maps: self.maps(),
             shadow_masks: masks,

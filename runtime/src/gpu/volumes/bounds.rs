@@ -35,7 +35,7 @@ impl LightNeedsBound<'_> {
             shaded: if has_casters { count } else { 0 },
             faces: if has_casters { self.faces(is_lamp) } else { BTreeSet::new() },
             runs,
-            slots: 1 + reaches + if self.is_found() { 3 } else { 0 },
+            binding_count: 1 + reaches + if self.is_found() { 3 } else { 0 },
             buffers: (reaches + per_run.0, reach_bytes + per_run.1),
         }
     }

@@ -62,7 +62,7 @@ impl CasterBuffers {
     }
 
     /// Entries of the bind group of what a light extrudes.
-    pub fn slots(&self, light: VolumeLight) -> usize {
+    pub fn binding_count(&self, light: VolumeLight) -> usize {
         self.bindings(light).count()
     }
 

@@ -41,7 +41,7 @@ pub struct CountedRun {
     pub indices: Option<wgpu::Buffer>,
     pub group: wgpu::BindGroup,
     /// Entries of the group.
-    pub slots: usize,
+    pub binding_count: usize,
 }
 
 impl Extruded {
@@ -120,8 +120,9 @@ impl Extruded {
         let indices = (!contents.is_empty()).then(|| gpu.device.create_buffer_init(&descriptor));
         self.buffers.0 += usize::from(indices.is_some());
         self.buffers.1 += contents.len() as u64;
-        let (group, slots) = group(gpu, &buffers.layout(gpu, self.kind.0), &[(0, Some(&buffers.points)), (1, reaches)]);
-        Ok(CountedRun { parts: volumes.parts, indices, group, slots })
+        let bound = [(0, Some(&buffers.points)), (1, reaches)];
+        let (group, binding_count) = group(gpu, &buffers.layout(gpu, self.kind.0), &bound);
+        Ok(CountedRun { parts: volumes.parts, indices, group, binding_count })
     }
 
     /// Silhouettes to be found by the vertex shader, from how each triangle counts.
@@ -154,8 +155,8 @@ impl Extruded {
             (3, Some(&found.triangles)),
             (4, Some(&packed)),
         ];
-        let (group, slots) = group(gpu, &buffers.layout(gpu, self.kind.0), &bound);
-        Ok(CountedRun { parts: parts.collect(), indices: None, group, slots })
+        let (group, binding_count) = group(gpu, &buffers.layout(gpu, self.kind.0), &bound);
+        Ok(CountedRun { parts: parts.collect(), indices: None, group, binding_count })
     }
 
     /// Number of buffers, and their bytes.

@@ -22,8 +22,8 @@ pub struct FrameLight {
     pub share: f32,
 }
 
-/// Where the volumes of a light are kept, and its index in lists of names: 0 for the sun, 1 for the lamp.
-pub fn slot(light: &Light) -> usize {
+/// Index of a light where there is one of each kind: 0 for the sun, 1 for the lamp.
+pub fn light_index(light: &Light) -> usize {
     match light {
         Light::Sun { .. } => 0,
         Light::Lamp { .. } => 1,

@@ -27,11 +27,11 @@ impl VolumeRenderer<'_> {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         depth: &DepthBuffer,
-        slot: usize,
+        light_index: usize,
         plan: &FramePlan,
         draws: &VolumeDraws,
     ) {
-        let Some(extruded) = &self.extruded[slot] else { return };
+        let Some(extruded) = &self.extruded[light_index] else { return };
         // Programs of the stencil do not depend on the picture's format.
         let program = |key: VolumeProgram| self.programs.get(&key, STENCIL_FORMAT);
         let mut pass = begin_depth_pass(encoder, "volumes", depth.with_stencil_cleared(), &self.clock, Phase::Volumes);
@@ -96,12 +96,12 @@ impl VolumeRenderer<'_> {
         encoder: &mut wgpu::CommandEncoder,
         picture: PictureTarget<'_>,
         depth: &DepthBuffer,
-        slot: usize,
+        light_index: usize,
         plan: &FramePlan,
         draws: &VolumeDraws,
         of: VolumeUse,
     ) {
-        let Some(extruded) = &self.extruded[slot] else { return };
+        let Some(extruded) = &self.extruded[light_index] else { return };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("faces"),
             color_attachments: &[Some(picture.attachment(wgpu::LoadOp::Clear(wgpu::Color::BLACK)))],

@@ -28,7 +28,7 @@ pub struct LightNeeds {
     /// Runs in which faces are counted.
     pub runs: usize,
     /// Entries of each run's bind group.
-    pub slots: usize,
+    pub binding_count: usize,
     /// Number of its own buffers, and their bytes.
     pub buffers: (usize, u64),
 }
@@ -126,12 +126,12 @@ impl VolumeNeeds {
         let lights = || self.lights_in(scene);
         let is_alone = self.output == Output::Lit || lights().next().is_none();
         let own = scene.census();
-        let slots: usize = lights().map(|light| light.runs * light.slots).sum();
+        let binding_count: usize = lights().map(|light| light.runs * light.binding_count).sum();
         let census = Census {
             passes: 1 + usize::from(is_alone) + lights().map(|light| light.count + light.shaded).sum::<usize>(),
             targets: 2,
             bind_groups: own.bind_groups + lights().map(|light| light.runs).sum::<usize>(),
-            bindings: own.bindings + slots,
+            bindings: own.bindings + binding_count,
             stencil_pipelines: programs.iter().filter(|key| key.is_of_volumes()).count(),
             volume_buffers: self.buffers.0 + lights().map(|light| light.buffers.0).sum::<usize>(),
             volume_bytes: self.buffers.1 + lights().map(|light| light.buffers.1).sum::<u64>(),

@@ -2,7 +2,7 @@
 
 use super::draws::VolumeDraws;
 use super::extruded::Extruded;
-use super::lights::{FrameLight, slot};
+use super::lights::{FrameLight, light_index};
 use super::passes::PassPlace;
 use super::plan::surface_programs;
 use super::programs::{FaceKey, VolumeProgram, face_key};
@@ -136,12 +136,12 @@ impl VolumeRenderer<'_> {
         let (plan, draws) = self.plan(view, &light.light);
         let plan_seconds = started.elapsed().as_secs_f64();
         self.report_light(&light.light, &plan, &draws, find_seconds, plan_seconds);
-        let slot = slot(&light.light);
+        let light_index = light_index(&light.light);
         let is_shaded = draws.triangles() > 0;
         self.note_last(light, is_shaded);
-        self.prepare_faces(slot, &draws, VolumeUse::Stencil, into.picture.format);
+        self.prepare_faces(light_index, &draws, VolumeUse::Stencil, into.picture.format);
         if is_shaded {
-            self.volume_pass(encoder, &into.depth, slot, &plan, &draws);
+            self.volume_pass(encoder, &into.depth, light_index, &plan, &draws);
         }
         self.light_pass(encoder, into, Some((light, is_shaded)), place);
         Ok(())
@@ -149,21 +149,21 @@ impl VolumeRenderer<'_> {
 
     /// Makes sure that the kept volumes are those of this light.
     pub(super) fn extrude(&mut self, light: &Light) -> Result<FindSeconds, GpuError> {
-        let kept = &self.extruded[slot(light)];
+        let kept = &self.extruded[light_index(light)];
         if self.settings.savings.cache && kept.as_ref().is_some_and(|extruded| extruded.light == *light) {
             return Ok([0.0; 2]);
         }
         let VolumeSettings { mode, savings, .. } = self.settings;
         let extruded = Extruded::new(self.gpu, &self.casters, &self.buffers, *light, mode, savings)?;
         let seconds = [extruded.find_seconds, extruded.overlap_seconds];
-        self.extruded[slot(light)] = Some(extruded);
+        self.extruded[light_index(light)] = Some(extruded);
         Ok(seconds)
     }
 
     /// What to draw of a light's volumes.
     pub(super) fn plan(&self, view: &View, light: &Light) -> (FramePlan, VolumeDraws) {
         let VolumeSettings { mode, savings, .. } = self.settings;
-        let extruded = self.extruded[slot(light)].as_ref().expect("a light is planned once it has extruded");
+        let extruded = self.extruded[light_index(light)].as_ref().expect("a light is planned once it has extruded");
         let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.faces, light, view, mode, savings);
         let draws = VolumeDraws::new(extruded, &plan, savings);
         (plan, draws)
@@ -172,15 +172,15 @@ impl VolumeRenderer<'_> {
     /// Builds the pipelines over faces that a plan needs and that are not there yet.
     pub(super) fn prepare_faces(
         &mut self,
-        slot: usize,
+        light_index: usize,
         draws: &VolumeDraws,
         of: VolumeUse,
         format: wgpu::TextureFormat,
     ) {
-        let Some(extruded) = &self.extruded[slot] else { return };
+        let Some(extruded) = &self.extruded[light_index] else { return };
         let faces: Vec<FaceKey> =
             draws.all().map(|(draw, is_z_pass)| face_key(extruded, draw.part, of, is_z_pass)).collect();
-        if let Some(light) = self.last.iter_mut().rfind(|light| light.slot == slot) {
+        if let Some(light) = self.last.iter_mut().rfind(|light| light.light_index == light_index) {
             light.faces.extend(faces.iter().copied());
         }
         let merge = (draws.runs.len() > 1 && of == VolumeUse::Stencil).then_some(VolumeProgram::MergeRun);

@@ -2,7 +2,7 @@
 
 use super::draws::VolumeDraws;
 use super::extruded::Extruded;
-use super::lights::{FrameLight, slot};
+use super::lights::{FrameLight, light_index};
 use super::plan::{LightNeeds, VolumeNeeds};
 use super::programs::{FaceKey, LightBlend, VolumeProgram};
 use super::{VolumeRenderer, caster_buffers};
@@ -47,7 +47,7 @@ pub struct FrameReport {
 
 /// A light of the last frame. All suns of a disc are one.
 pub struct LastLight {
-    pub slot: usize,
+    pub light_index: usize,
     hard: HardLight,
     blend: LightBlend,
     count: usize,
@@ -69,9 +69,9 @@ impl VolumeRenderer<'_> {
         [find_seconds, overlap_seconds]: FindSeconds,
         plan_seconds: f64,
     ) {
-        let name = ["sun", "lamp"][slot(light)];
+        let name = ["sun", "lamp"][light_index(light)];
         let (plan, triangles) = (plan.counts, draws.triangles());
-        let runs = self.extruded[slot(light)].as_ref().map_or(0, |extruded| extruded.runs.len());
+        let runs = self.extruded[light_index(light)].as_ref().map_or(0, |extruded| extruded.runs.len());
         match self.report.lights.iter_mut().find(|report| report.light == name) {
             Some(report) => {
                 (report.plan, report.triangles, report.runs) = (plan, triangles, report.runs.max(runs));
@@ -93,10 +93,10 @@ impl VolumeRenderer<'_> {
 
     /// Notes a light for the plan of this frame.
     pub(super) fn note_last(&mut self, light: &FrameLight, is_shaded: bool) {
-        let (slot, hard, blend, shaded) = (slot(&light.light), light.hard, light.blend, usize::from(is_shaded));
-        match self.last.last_mut().filter(|last| last.slot == slot) {
+        let (light_index, hard, blend, shaded) = (light_index(&light.light), light.hard, light.blend, usize::from(is_shaded));
+        match self.last.last_mut().filter(|last| last.light_index == light_index) {
             Some(last) => (last.count, last.shaded) = (last.count + 1, last.shaded + shaded),
-            None => self.last.push(LastLight { slot, hard, blend, count: 1, shaded, faces: BTreeSet::new() }),
+            None => self.last.push(LastLight { light_index, hard, blend, count: 1, shaded, faces: BTreeSet::new() }),
         }
     }
 
@@ -113,8 +113,8 @@ impl VolumeRenderer<'_> {
     }
 
     fn needs_of(&self, last: &LastLight) -> LightNeeds {
-        let &LastLight { slot, hard, blend, count, shaded, .. } = last;
-        let extruded = self.extruded[slot].as_ref();
+        let &LastLight { light_index, hard, blend, count, shaded, .. } = last;
+        let extruded = self.extruded[light_index].as_ref();
         LightNeeds {
             hard,
             blend,
@@ -122,7 +122,7 @@ impl VolumeRenderer<'_> {
             shaded,
             faces: last.faces.clone(),
             runs: extruded.map_or(0, |extruded| extruded.runs.len()),
-            slots: extruded.map_or(0, |extruded| self.buffers.slots(extruded.kind.0)),
+            binding_count: extruded.map_or(0, |extruded| self.buffers.binding_count(extruded.kind.0)),
             buffers: extruded.map_or((0, 0), Extruded::size),
         }
     }
@@ -137,7 +137,7 @@ impl VolumeRenderer<'_> {
             passes: self.report.passes,
             targets: self.targets.count(),
             bind_groups: scene.bind_groups + runs().count(),
-            bindings: scene.bindings + runs().map(|run| run.slots).sum::<usize>(),
+            bindings: scene.bindings + runs().map(|run| run.binding_count).sum::<usize>(),
             stencil_pipelines: self.programs.keys().filter(|key: &&VolumeProgram| key.is_of_volumes()).count(),
             volume_buffers: buffers,
             volume_bytes: bytes,

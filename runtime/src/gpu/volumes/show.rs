@@ -1,7 +1,7 @@
 //! Pictures of the volumes themselves, drawn over a picture's depths.
 
 use super::VolumeRenderer;
-use super::lights::slot;
+use super::lights::light_index;
 use crate::View;
 use crate::gpu::device::GpuError;
 use crate::gpu::frame::{Output, readback};
@@ -83,10 +83,10 @@ impl VolumeRenderer<'_> {
             self.extrude(&light.light)?;
             let mut encoder = gpu.encoder();
             self.scene.frame.write(gpu, &mut encoder, view, &light.moment);
-            let slot = slot(&light.light);
+            let light_index = light_index(&light.light);
             let (plan, draws) = self.plan(view, &light.light);
-            self.prepare_faces(slot, &draws, of, picture.target().format);
-            self.face_pass(&mut encoder, picture.target(), &depth, slot, &plan, &draws, of);
+            self.prepare_faces(light_index, &draws, of, picture.target().format);
+            self.face_pass(&mut encoder, picture.target(), &depth, light_index, &plan, &draws, of);
             readback::read(gpu, &picture, output.channels(), encoder)
         })?
     }
