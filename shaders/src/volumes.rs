@@ -20,7 +20,7 @@ pub enum VolumeCorners {
     /// An index list made by the CPU: entry point `volume_vertex`.
     Indexed,
     /// The vertex shader, from every edge: entry points `wall_vertex`, `cap_vertex`, and for lamps `dark_cap_vertex`.
-    Found,
+    FromEdges,
 }
 
 /// What the pixels of a face are used for.
@@ -60,10 +60,10 @@ pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) 
     }
     match (corners, light) {
         (VolumeCorners::Indexed, _) => text.push_str(wgsl!("volumes/indexed")),
-        (VolumeCorners::Found, VolumeLight::Sun) => {
-            text.push_str(&[wgsl!("volumes/found"), wgsl!("volumes/wall_sun")].concat());
+        (VolumeCorners::FromEdges, VolumeLight::Sun) => {
+            text.push_str(&[wgsl!("volumes/silhouettes_by_gpu"), wgsl!("volumes/wall_sun")].concat());
         }
-        (VolumeCorners::Found, _) => text.push_str(&[wgsl!("volumes/found"), wgsl!("volumes/wall_lamp")].concat()),
+        (VolumeCorners::FromEdges, _) => text.push_str(&[wgsl!("volumes/silhouettes_by_gpu"), wgsl!("volumes/wall_lamp")].concat()),
     }
     text.push_str(match of {
         VolumeUse::Stencil => "",

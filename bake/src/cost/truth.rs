@@ -40,7 +40,7 @@ pub(super) struct SurfaceSample {
 
 impl SurfaceSample {
     /// Unit normal of the plane, towards the viewed side.
-    pub fn face(&self) -> DVec3 {
+    pub fn geometric_normal(&self) -> DVec3 {
         if self.is_back { -self.surface.normal } else { self.surface.normal }
     }
 }
@@ -156,6 +156,6 @@ fn of_side(
     if !place.surface.is_double_sided {
         return metric::disc_visibility(answers, lanes, path, place.start);
     }
-    let before = answers.iter().zip(paths).map(|(lit, path)| lit.intersection(&path.above_plane(place.face())));
+    let before = answers.iter().zip(paths).map(|(lit, path)| lit.intersection(&path.above_plane(place.geometric_normal())));
     metric::disc_visibility(&before.collect::<Vec<_>>(), lanes, path, place.start)
 }

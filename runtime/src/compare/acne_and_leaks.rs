@@ -136,7 +136,7 @@ struct ReceiverPoint<'a> {
     triangle: u32,
     point_m: DVec3,
     /// Unit normal on the side that the eye is on.
-    face: DVec3,
+    geometric_normal: DVec3,
     /// Unit vector to the sun.
     sun: DVec3,
     /// Unit vectors across the light.
@@ -154,7 +154,7 @@ impl<'a> ReceiverPoint<'a> {
             shot,
             triangle: hit.triangle,
             point_m: geometry.point(hit.triangle as usize, hit.barycentric),
-            face: if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front },
+            geometric_normal: if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front },
             sun,
             aside: sun.any_orthonormal_pair().into(),
             spread: if is_soft { f64::from(moment.sun_radius_rad).tan() } else { 0.0 },
@@ -163,7 +163,7 @@ impl<'a> ReceiverPoint<'a> {
 
     /// Whether truth has no edge within reach.
     fn is_uniform(&self, is_lit: bool, reach_m: f64) -> bool {
-        let facing = self.face.dot(self.sun);
+        let facing = self.geometric_normal.dot(self.sun);
         if facing <= 0.0 {
             // Turned away from the light: dark whatever is near, unless the disc's rim may just reach it.
             return !is_lit && facing < -self.spread;
@@ -178,7 +178,7 @@ impl<'a> ReceiverPoint<'a> {
         let level_m = 1e-3 * reach_m + 1e-6 * self.point_m.length();
         geometry.triangles.iter().enumerate().any(|(i, corners_m)| {
             let from_point = corners_m.map(|corner| corner.as_dvec3() - self.point_m);
-            let heights = from_point.map(|v| self.face.dot(v) - level_m);
+            let heights = from_point.map(|v| self.geometric_normal.dot(v) - level_m);
             if heights.iter().all(|&h| h <= 0.0) {
                 return false;
             }
@@ -199,10 +199,10 @@ impl<'a> ReceiverPoint<'a> {
     /// Whether light reaches the surface's plane anywhere within reach.
     fn has_light_within(&self, reach_m: f64) -> bool {
         let tracer = self.shot.stage.tracer();
-        let origin_m = tracer.lift(self.point_m, self.face, self.triangle);
+        let origin_m = tracer.lift(self.point_m, self.geometric_normal, self.triangle);
         let reaches = |origin_m: DVec3, towards: DVec3| {
             towards.y > 0.0
-                && self.face.dot(towards) > 0.0
+                && self.geometric_normal.dot(towards) > 0.0
                 && !tracer.is_occluded(origin_m, &Direction::new(towards.normalize()))
         };
         (0..RAYS).any(|i| {
@@ -210,7 +210,7 @@ impl<'a> ReceiverPoint<'a> {
             let aside = self.aside[0] * cos + self.aside[1] * sin;
             let shift_m = aside * (reach_m * ((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt());
             // On the plane of the surface, which lies up or down along the light.
-            let start_m = origin_m + shift_m - self.sun * (self.face.dot(shift_m) / self.face.dot(self.sun));
+            let start_m = origin_m + shift_m - self.sun * (self.geometric_normal.dot(shift_m) / self.geometric_normal.dot(self.sun));
             // And beside the start: the plane may continue below another surface.
             [start_m, origin_m + shift_m].into_iter().any(|start_m| {
                 reaches(start_m, self.sun) || (self.spread > 0.0 && reaches(start_m, self.sun + aside * self.spread))

@@ -43,7 +43,7 @@ impl Truth {
     fn lamp_visibility_from(
         self,
         stage: &Stage,
-        &ShadowRayOrigin { face, on_plane_m, point_m, origin_m }: &ShadowRayOrigin,
+        &ShadowRayOrigin { geometric_normal, on_plane_m, point_m, origin_m }: &ShadowRayOrigin,
         pixel: usize,
         lamp: &Ball,
     ) -> f32 {
@@ -52,7 +52,7 @@ impl Truth {
         }
         let tracer = stage.tracer();
         let reaches =
-            |lamp_m: DVec3| face.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
+            |lamp_m: DVec3| geometric_normal.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
         match self {
             Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
             Self::Soft { rays } => {
@@ -79,13 +79,13 @@ impl Truth {
     fn sun_visibility_from(
         self,
         stage: &Stage,
-        &ShadowRayOrigin { face, origin_m, .. }: &ShadowRayOrigin,
+        &ShadowRayOrigin { geometric_normal, origin_m, .. }: &ShadowRayOrigin,
         pixel: usize,
         sun: &SunDisc,
     ) -> f32 {
         let tracer = stage.tracer();
         let reaches = |direction: DVec3| {
-            direction.y > 0.0 && face.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
+            direction.y > 0.0 && geometric_normal.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(sun.centre))),
@@ -100,7 +100,7 @@ impl Truth {
 /// Where a pixel's rays to the light start.
 struct ShadowRayOrigin {
     /// Unit normal on the side that the eye is on.
-    face: DVec3,
+    geometric_normal: DVec3,
     /// A corner of the triangle. With it all points of the triangle agree on which side of their plane a lamp is.
     on_plane_m: DVec3,
     point_m: DVec3,
@@ -111,10 +111,10 @@ impl ShadowRayOrigin {
     fn new(stage: &Stage, ray: Vec3, hit: &Hit) -> Self {
         let triangle = hit.triangle as usize;
         let front = stage.geometry.normal(triangle);
-        let face = if front.dot(ray.as_dvec3()) > 0.0 { -front } else { front };
+        let geometric_normal = if front.dot(ray.as_dvec3()) > 0.0 { -front } else { front };
         let point_m = stage.geometry.point(triangle, hit.barycentric);
         let on_plane_m = stage.geometry.triangles[triangle][0].as_dvec3();
-        Self { face, on_plane_m, point_m, origin_m: stage.tracer().lift(point_m, face, hit.triangle) }
+        Self { geometric_normal, on_plane_m, point_m, origin_m: stage.tracer().lift(point_m, geometric_normal, hit.triangle) }
     }
 }
 

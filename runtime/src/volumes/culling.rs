@@ -96,7 +96,7 @@ impl Frustum {
     }
 
     /// Whether a caster may hide the light from some point of the near rectangle.
-    pub fn may_be_shaded_by(&self, casters: &Casters, caster: &Caster, faces: &[i8], light: &Light) -> bool {
+    pub fn may_be_shaded_by(&self, casters: &Casters, caster: &Caster, facings: &[i8], light: &Light) -> bool {
         let reach_m = PYRAMID_MARGIN * self.near_reach_m;
         let (way, length) = match light {
             Light::Sun { towards } => (*towards, f64::INFINITY),
@@ -121,7 +121,7 @@ impl Frustum {
             let [a, b, c] = casters.corners_m(triangle);
             meets(&[a.min(b).min(c), a.max(b).max(c)])
         };
-        meets(&caster.bounds_m) && caster.triangles.clone().any(|t| faces[t] != 0 && triangle_meets(t))
+        meets(&caster.bounds_m) && caster.triangles.clone().any(|t| facings[t] != 0 && triangle_meets(t))
     }
 
     /// The pixels that a box can cover: left, top, width, height. None where it covers none.

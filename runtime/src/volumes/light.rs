@@ -26,7 +26,7 @@ pub enum Light {
 
 /// Which of the casters' triangles face a light.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Faces {
+pub struct Facings {
     /// For each triangle, how its prism counts: 1 where its front faces the light and casts, -1 where its back does and
     /// casts, 0 where it casts nothing.
     pub of_triangle: Vec<i8>,
@@ -70,7 +70,7 @@ impl Light {
 
     /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; `spares`
     /// leaves them out. Triangles that are edge on have no prism.
-    pub fn faces(&self, casters: &Casters, spares: bool) -> Faces {
+    pub fn facings(&self, casters: &Casters, spares: bool) -> Facings {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
         let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
             caster.triangles.clone().into_par_iter().with_min_len(1024).map(move |triangle| {
@@ -79,7 +79,7 @@ impl Light {
             })
         };
         let of_triangle = casters.all.par_iter().zip(&is_solid).flat_map(of_caster).collect();
-        Faces { of_triangle, is_solid }
+        Facings { of_triangle, is_solid }
     }
 }
 

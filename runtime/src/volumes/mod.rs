@@ -34,7 +34,7 @@ pub mod silhouettes;
 pub mod weld;
 
 pub use casters::{CasterCounts, Casters};
-pub use light::{Faces, Light};
+pub use light::{Facings, Light};
 pub use plan::{FramePlan, PlanCounts};
 pub use silhouettes::{Extrusion, Part, Parts, Sharing, Volumes};
 

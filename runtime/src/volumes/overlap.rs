@@ -30,19 +30,19 @@ struct TrianglesInLightView {
 }
 
 /// Cuts the casting triangles into a few runs, none of which has more than `most` prisms at one spot.
-pub fn runs(casters: &Casters, faces: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
-    let casting = faces.iter().filter(|&&face| face != 0).count();
+pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
+    let casting = facings.iter().filter(|&&facing| facing != 0).count();
     if casting <= most {
-        return std::iter::once(0..faces.len()).collect();
+        return std::iter::once(0..facings.len()).collect();
     }
     let view = LightView::new(casters, light);
-    let seen = |triangle: usize| match faces[triangle] {
+    let seen = |triangle: usize| match facings[triangle] {
         0 => ([Vec3::ZERO; 3], [Vec3::INFINITY, Vec3::NEG_INFINITY]),
         _ => view.project(&casters.corners_m(triangle)),
     };
-    let (corners, bounds) = (0..faces.len()).into_par_iter().map(seen).unzip();
+    let (corners, bounds) = (0..facings.len()).into_par_iter().map(seen).unzip();
     let mut found = Vec::new();
-    TrianglesInLightView { view, corners, bounds }.cut(0..faces.len(), most, &mut found);
+    TrianglesInLightView { view, corners, bounds }.cut(0..facings.len(), most, &mut found);
     found
 }
 
@@ -204,8 +204,8 @@ mod tests {
         let triangles: Vec<_> = (0..sheets).flat_map(sheet).collect();
         let stage = Stage::plain(SceneBuilder::new().soup(&triangles).build(), None);
         let casters = Casters::new(&stage);
-        let faces = light.faces(&casters, true).of_triangle;
-        runs(&casters, &faces, light, 255).len()
+        let facings = light.facings(&casters, true).of_triangle;
+        runs(&casters, &facings, light, 255).len()
     }
 
     #[test]

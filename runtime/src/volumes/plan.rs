@@ -2,7 +2,7 @@
 
 use super::casters::Casters;
 use super::culling::{Frustum, Receivers, Targets, is_in_range};
-use super::light::{Faces, Light};
+use super::light::{Facings, Light};
 use super::silhouettes::{Part, Parts};
 use super::{Mode, Savings};
 use crate::View;
@@ -78,7 +78,7 @@ impl FramePlan {
     pub fn new(
         casters: &Casters,
         receivers: &Receivers,
-        faces: &Faces,
+        facings: &Facings,
         light: &Light,
         view: &View,
         mode: Mode,
@@ -86,7 +86,7 @@ impl FramePlan {
     ) -> Self {
         let frustum = Frustum::new(view);
         let targets = Targets::new(receivers.in_view(&frustum, light), &frustum, light);
-        let chooser = Chooser { casters, faces, light, frustum: &frustum, targets: &targets, mode, savings };
+        let chooser = Chooser { casters, facings, light, frustum: &frustum, targets: &targets, mode, savings };
         let chosen: Vec<Choice> = (0..casters.all.len()).into_par_iter().map(|i| chooser.choose(i)).collect();
         let mut counts = PlanCounts { casters: chosen.len(), ..PlanCounts::default() };
         for choice in &chosen {
@@ -155,7 +155,7 @@ enum Choice {
 
 struct Chooser<'a> {
     casters: &'a Casters,
-    faces: &'a Faces,
+    facings: &'a Facings,
     light: &'a Light,
     frustum: &'a Frustum,
     targets: &'a Targets,
@@ -166,7 +166,7 @@ struct Chooser<'a> {
 impl Chooser<'_> {
     fn choose(&self, index: usize) -> Choice {
         let caster = &self.casters.all[index];
-        let casts = || caster.triangles.clone().any(|triangle| self.faces.of_triangle[triangle] != 0);
+        let casts = || caster.triangles.clone().any(|triangle| self.facings.of_triangle[triangle] != 0);
         if !is_in_range(&caster.bounds_m, self.light) || !casts() {
             return Choice::CastingNothing;
         }
@@ -193,7 +193,7 @@ impl Chooser<'_> {
     /// that it lies on, and the eye is outside of the volume.
     fn allows_z_pass(&self, index: usize) -> bool {
         let caster = &self.casters.all[index];
-        let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.faces.is_solid[index]);
-        hides_caps && !self.frustum.may_be_shaded_by(self.casters, caster, &self.faces.of_triangle, self.light)
+        let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.facings.is_solid[index]);
+        hides_caps && !self.frustum.may_be_shaded_by(self.casters, caster, &self.facings.of_triangle, self.light)
     }
 }

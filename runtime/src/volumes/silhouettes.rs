@@ -92,51 +92,51 @@ pub enum Sharing {
 }
 
 /// The volumes of all casters.
-pub fn volumes(casters: &Casters, faces: &[i8], extrusion: Extrusion, sharing: Sharing) -> Volumes {
+pub fn volumes(casters: &Casters, facings: &[i8], extrusion: Extrusion, sharing: Sharing) -> Volumes {
     let of_caster = |caster: &Caster| {
         let walls = match sharing == Sharing::Prisms || caster.is_soup {
-            true => walls_of_prisms(casters, faces, caster, extrusion),
-            false => walls_of_silhouettes(casters, faces, caster, extrusion),
+            true => walls_of_prisms(casters, facings, caster, extrusion),
+            false => walls_of_silhouettes(casters, facings, caster, extrusion),
         };
-        let (caps, dark_caps) = caps(casters, faces, caster, extrusion);
+        let (caps, dark_caps) = caps(casters, facings, caster, extrusion);
         [walls, caps, dark_caps]
     };
     joined(&casters.all.par_iter().map(of_caster).collect::<Vec<_>>())
 }
 
-fn walls_of_silhouettes(casters: &Casters, faces: &[i8], caster: &Caster, extrusion: Extrusion) -> Vec<u32> {
+fn walls_of_silhouettes(casters: &Casters, facings: &[i8], caster: &Caster, extrusion: Extrusion) -> Vec<u32> {
     let edges = caster.edges.clone().into_par_iter().with_min_len(4096);
     let walls = edges.flat_map_iter(|edge| {
-        let times = edge_count(casters, faces, edge);
-        wall(casters, casters.edges[edge], times.signum(), extrusion).repeat(times.unsigned_abs() as usize)
+        let winding = edge_winding(casters, facings, edge);
+        wall(casters, casters.edges[edge], winding.signum(), extrusion).repeat(winding.unsigned_abs() as usize)
     });
     walls.collect()
 }
 
-fn walls_of_prisms(casters: &Casters, faces: &[i8], caster: &Caster, extrusion: Extrusion) -> Vec<u32> {
+fn walls_of_prisms(casters: &Casters, facings: &[i8], caster: &Caster, extrusion: Extrusion) -> Vec<u32> {
     let walls = caster.triangles.clone().into_par_iter().with_min_len(1024).flat_map_iter(|triangle| {
         let points = casters.triangles[triangle];
-        let face = i32::from(faces[triangle]);
+        let facing = i32::from(facings[triangle]);
         (0..3).flat_map(move |k| {
             let (from, to) = (points[k], points[(k + 1) % 3]);
-            let way = if from < to { face } else { -face };
-            wall(casters, [from.min(to), from.max(to)], if from == to { 0 } else { way }, extrusion)
+            let orientation = if from < to { facing } else { -facing };
+            wall(casters, [from.min(to), from.max(to)], if from == to { 0 } else { orientation }, extrusion)
         })
     });
     walls.collect()
 }
 
 /// How often the wall of an edge is drawn, with its sign: the sum over its triangles.
-pub fn edge_count(casters: &Casters, faces: &[i8], edge: usize) -> i32 {
-    casters.uses_of(edge).iter().map(|u| u.sign() * i32::from(faces[u.triangle()])).sum()
+pub fn edge_winding(casters: &Casters, facings: &[i8], edge: usize) -> i32 {
+    casters.uses_of(edge).iter().map(|u| u.sign() * i32::from(facings[u.triangle()])).sum()
 }
 
-/// A wall outside of a patch whose boundary runs along the edge from its lower point to its higher (`way` 1) or back
-/// (-1). Both start at the same corner and cut the quad along the same diagonal, so that a rasteriser, which
+/// A wall outside of a patch whose boundary runs along the edge from its lower point to its higher (`orientation` 1) or
+/// back (-1). Both start at the same corner and cut the quad along the same diagonal, so that a rasteriser, which
 /// interpolates from the first corner, gives both the same depths.
-fn wall(casters: &Casters, [low, high]: [u32; 2], way: i32, extrusion: Extrusion) -> Vec<u32> {
+fn wall(casters: &Casters, [low, high]: [u32; 2], orientation: i32, extrusion: Extrusion) -> Vec<u32> {
     let points = casters.points_m.len() as u32;
-    match (extrusion, way) {
+    match (extrusion, orientation) {
         (_, 0) => Vec::new(),
         (Extrusion::ToPoint, 1) => vec![high, low, points],
         (Extrusion::ToPoint, _) => vec![high, points, low],
@@ -145,12 +145,12 @@ fn wall(casters: &Casters, [low, high]: [u32; 2], way: i32, extrusion: Extrusion
     }
 }
 
-fn caps(casters: &Casters, faces: &[i8], caster: &Caster, extrusion: Extrusion) -> (Vec<u32>, Vec<u32>) {
+fn caps(casters: &Casters, facings: &[i8], caster: &Caster, extrusion: Extrusion) -> (Vec<u32>, Vec<u32>) {
     let points = casters.points_m.len() as u32;
     let (mut caps, mut dark_caps) = (Vec::new(), Vec::new());
-    for triangle in caster.triangles.clone().filter(|&triangle| faces[triangle] != 0) {
+    for triangle in caster.triangles.clone().filter(|&triangle| facings[triangle] != 0) {
         let [a, b, c] = casters.triangles[triangle];
-        let [a, b, c] = if faces[triangle] > 0 { [a, b, c] } else { [a, c, b] };
+        let [a, b, c] = if facings[triangle] > 0 { [a, b, c] } else { [a, c, b] };
         caps.extend([a, b, c]);
         if extrusion == Extrusion::Spread {
             dark_caps.extend([a, c, b].map(|point| points + point));

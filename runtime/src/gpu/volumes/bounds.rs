@@ -35,12 +35,12 @@ impl LightNeedsBound<'_> {
             shaded: if has_casters { count } else { 0 },
             faces: if has_casters { self.faces(is_lamp) } else { BTreeSet::new() },
             runs,
-            binding_count: 1 + reaches + if self.is_found() { 3 } else { 0 },
+            binding_count: 1 + reaches + if self.finds_on_gpu() { 3 } else { 0 },
             buffers: (reaches + per_run.0, reach_bytes + per_run.1),
         }
     }
 
-    fn is_found(&self) -> bool {
+    fn finds_on_gpu(&self) -> bool {
         self.settings.mode == Mode::Gpu && !self.casters.triangles.is_empty()
     }
 
@@ -54,7 +54,7 @@ impl LightNeedsBound<'_> {
 
     fn buffers_of_run(&self, is_lamp: bool, runs: usize) -> (usize, u64) {
         let triangles = self.casters.triangles.len() as u64;
-        match self.is_found() {
+        match self.finds_on_gpu() {
             // Two bits a triangle, all of them in each run.
             true => (runs, runs as u64 * 4 * triangles.div_ceil(16)),
             false if triangles == 0 => (0, 0),
@@ -71,10 +71,10 @@ impl LightNeedsBound<'_> {
             Mode::Planned | Mode::Gpu => self.settings.savings.z_pass,
         };
         let hides_caps = self.casters.all.iter().any(|c| c.shows_both_sides || (c.shows_fronts && c.is_solid));
-        let (corners, parts) = match (self.is_found(), is_lamp) {
+        let (corners, parts) = match (self.finds_on_gpu(), is_lamp) {
             (false, _) => (VolumeCorners::Indexed, &[Part::Walls][..]),
-            (true, false) => (VolumeCorners::Found, &[Part::Walls, Part::Caps][..]),
-            (true, true) => (VolumeCorners::Found, &Part::ALL[..]),
+            (true, false) => (VolumeCorners::FromEdges, &[Part::Walls, Part::Caps][..]),
+            (true, true) => (VolumeCorners::FromEdges, &Part::ALL[..]),
         };
         let light = if is_lamp { VolumeLight::LampWithRange } else { VolumeLight::Sun };
         let is_run = self.casters.triangles.len() > MOST_COUNTED;

@@ -6,18 +6,18 @@ use std::ops::Range;
 use sunbake_shaders::VolumeLight;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Marks a missing second triangle; as in `volumes/found.wgsl`.
+/// Marks a missing second triangle; as in `volumes/silhouettes_by_gpu.wgsl`.
 const NO_TRIANGLE: u32 = u32::MAX;
 
 /// Points of the casters and, where the vertex shader finds silhouettes, edges and triangles.
 pub struct CasterBuffers {
     pub points: wgpu::Buffer,
     /// Only where the vertex shader finds silhouettes.
-    pub found: Option<FoundBuffers>,
+    pub edges: Option<EdgeBuffers>,
 }
 
 /// What the vertex shader finds silhouettes in.
-pub struct FoundBuffers {
+pub struct EdgeBuffers {
     /// Edges, with two triangles each.
     pub walls: wgpu::Buffer,
     /// Corners of triangles.
@@ -33,8 +33,9 @@ impl CasterBuffers {
         let points: Vec<f32> = casters.points_m.iter().flat_map(|p| p.to_array()).chain([0.0; 3]).collect();
         let used = if casters.points_m.is_empty() { 3 } else { points.len() - 3 };
         let points = storage(gpu, "points of casters", bytemuck::cast_slice(&points[..used]))?;
-        let found = (mode == Mode::Gpu && !casters.triangles.is_empty()).then(|| found(gpu, casters)).transpose()?;
-        Ok(Self { points, found })
+        let has_edges = mode == Mode::Gpu && !casters.triangles.is_empty();
+        let edges = has_edges.then(|| EdgeBuffers::new(gpu, casters)).transpose()?;
+        Ok(Self { points, edges })
     }
 
     /// Layout of the bind group of what a light extrudes.
@@ -56,8 +57,8 @@ impl CasterBuffers {
 
     /// The bindings that are used.
     fn bindings(&self, light: VolumeLight) -> impl Iterator<Item = u32> + use<> {
-        let (is_found, has_reaches) = (self.found.is_some(), light == VolumeLight::LampWithRange);
-        let used = [(0, true), (1, has_reaches), (2, is_found), (3, is_found), (4, is_found)];
+        let (has_edges, has_reaches) = (self.edges.is_some(), light == VolumeLight::LampWithRange);
+        let used = [(0, true), (1, has_reaches), (2, has_edges), (3, has_edges), (4, has_edges)];
         used.into_iter().filter(|(_, is_used)| *is_used).map(|(binding, _)| binding)
     }
 
@@ -68,8 +69,8 @@ impl CasterBuffers {
 
     /// Number of buffers, and their bytes.
     pub fn size(&self) -> (usize, u64) {
-        let found = self.found.iter().flat_map(|found| [&found.walls, &found.triangles]);
-        let all: Vec<&wgpu::Buffer> = std::iter::once(&self.points).chain(found).collect();
+        let of_edges = self.edges.iter().flat_map(|edges| [&edges.walls, &edges.triangles]);
+        let all: Vec<&wgpu::Buffer> = std::iter::once(&self.points).chain(of_edges).collect();
         (all.len(), all.iter().map(|buffer| buffer.size()).sum())
     }
 }
@@ -83,29 +84,31 @@ pub fn size_of(casters: &Casters, mode: Mode) -> (usize, u64) {
     }
 }
 
-fn found(gpu: &Gpu, casters: &Casters) -> Result<FoundBuffers, GpuError> {
-    let mut records: Vec<[u32; 4]> = Vec::new();
-    let mut of_caster = Vec::new();
-    for caster in &casters.all {
-        let first = records.len() as u32;
-        for edge in caster.edges.clone() {
-            // Triangles that run along the edge are paired with those that run against it. Then no pair of a closed
-            // mesh needs more than one wall.
-            let [along, against]: [Vec<_>; 2] = [1, -1]
-                .map(|sign| casters.uses_of(edge).iter().filter(|u| u.sign() == sign).map(|u| u.code()).collect());
-            let paired = along.len().min(against.len());
-            let [low, high] = casters.edges[edge];
-            records.extend((0..paired).map(|i| [low, high, along[i], against[i]]));
-            let rest: Vec<u32> = along[paired..].iter().chain(&against[paired..]).copied().collect();
-            records.extend(rest.chunks(2).map(|two| [low, high, two[0], two.get(1).copied().unwrap_or(NO_TRIANGLE)]));
+impl EdgeBuffers {
+    fn new(gpu: &Gpu, casters: &Casters) -> Result<Self, GpuError> {
+        let mut records: Vec<[u32; 4]> = Vec::new();
+        let mut of_caster = Vec::new();
+        for caster in &casters.all {
+            let first = records.len() as u32;
+            for edge in caster.edges.clone() {
+                // Triangles that run along the edge are paired with those that run against it. Then no pair of a closed
+                // mesh needs more than one wall.
+                let [along, against]: [Vec<_>; 2] = [1, -1]
+                    .map(|sign| casters.uses_of(edge).iter().filter(|u| u.sign() == sign).map(|u| u.code()).collect());
+                let paired = along.len().min(against.len());
+                let [low, high] = casters.edges[edge];
+                records.extend((0..paired).map(|i| [low, high, along[i], against[i]]));
+                let rest: Vec<u32> = along[paired..].iter().chain(&against[paired..]).copied().collect();
+                records.extend(rest.chunks(2).map(|two| [low, high, two[0], two.get(1).copied().unwrap_or(NO_TRIANGLE)]));
+            }
+            of_caster.push(first..records.len() as u32);
         }
-        of_caster.push(first..records.len() as u32);
+        Ok(Self {
+            walls: storage(gpu, "edges of casters", bytemuck::cast_slice(&records))?,
+            triangles: storage(gpu, "triangles of casters", bytemuck::cast_slice(&casters.triangles))?,
+            of_caster,
+        })
     }
-    Ok(FoundBuffers {
-        walls: storage(gpu, "edges of casters", bytemuck::cast_slice(&records))?,
-        triangles: storage(gpu, "triangles of casters", bytemuck::cast_slice(&casters.triangles))?,
-        of_caster,
-    })
 }
 
 /// A storage buffer, if it fits the device.

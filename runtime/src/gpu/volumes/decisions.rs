@@ -25,7 +25,7 @@ impl VolumeDecisions<'_> {
             self.counted(true),
             self.counted(false),
             self.open_meshes(),
-            self.found(),
+            self.silhouettes_by_gpu(),
             self.runs(),
             self.shown(),
         ]
@@ -80,7 +80,7 @@ impl VolumeDecisions<'_> {
         need.with(Uncounted::Prisms(triangles))
     }
 
-    fn found(&self) -> DrawNeed {
+    fn silhouettes_by_gpu(&self) -> DrawNeed {
         let is_on = self.settings.mode == Mode::Gpu;
         let saved = is_on.then(|| Census { volume_buffers: 2, ..Census::default() });
         DrawNeed::new(DrawEffect::SilhouettesByGpu, saved, Reason::Usual)

@@ -1,12 +1,12 @@
 //! What a light makes of the casters: volumes, kept while the light stands still.
 
-use super::caster_buffers::{CasterBuffers, FoundBuffers, storage};
+use super::caster_buffers::{CasterBuffers, EdgeBuffers, storage};
 use crate::gpu::device::{Gpu, GpuError};
 use crate::volumes::nearest::distance_m;
 use crate::volumes::overlap;
 use crate::volumes::silhouettes::volumes;
 use crate::volumes::{
-    Casters, Extrusion, Faces, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, Savings, Sharing,
+    Casters, Extrusion, Facings, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, Savings, Sharing,
 };
 use std::borrow::Cow;
 use std::time::Instant;
@@ -21,7 +21,7 @@ pub struct Extruded {
     /// The light.
     pub light: Light,
     /// What the light makes of the triangles.
-    pub faces: Faces,
+    pub facings: Facings,
     /// Which shaders draw them.
     pub kind: (VolumeLight, VolumeCorners),
     /// Casters in as many runs as the stencil's bits need; mostly one.
@@ -55,14 +55,14 @@ impl Extruded {
         savings: Savings,
     ) -> Result<Self, GpuError> {
         let started = Instant::now();
-        let faces = light.faces(casters, savings.solids);
+        let facings = light.facings(casters, savings.solids);
         let counting = Instant::now();
-        let runs = match overlap::runs(casters, &faces.of_triangle, &light, MOST_COUNTED) {
+        let runs = match overlap::runs(casters, &facings.of_triangle, &light, MOST_COUNTED) {
             one if one.len() == 1 => one,
-            _ => overlap::runs(casters, &faces.of_triangle, &light, MOST_COUNTED_BY_RUN),
+            _ => overlap::runs(casters, &facings.of_triangle, &light, MOST_COUNTED_BY_RUN),
         };
         let overlap_seconds = counting.elapsed().as_secs_f64();
-        let corners = if buffers.found.is_some() { VolumeCorners::Found } else { VolumeCorners::Indexed };
+        let corners = if buffers.edges.is_some() { VolumeCorners::FromEdges } else { VolumeCorners::Indexed };
         let reaches = match light {
             Light::Lamp { position_m, range_m: Some(range_m) } => reaches(casters, position_m, range_m),
             _ => None,
@@ -80,16 +80,16 @@ impl Extruded {
             find_seconds: 0.0,
             overlap_seconds,
             buffers: (usize::from(reaches.is_some()), reaches.as_ref().map_or(0, wgpu::Buffer::size)),
-            faces: Faces::default(),
+            facings: Facings::default(),
         };
         for run in &runs {
-            let in_run = |(i, &face): (usize, &i8)| if run.contains(&i) { face } else { 0 };
+            let in_run = |(i, &facing): (usize, &i8)| if run.contains(&i) { facing } else { 0 };
             let of_run: Cow<[i8]> = match runs.len() {
-                1 => Cow::Borrowed(&faces.of_triangle),
-                _ => faces.of_triangle.iter().enumerate().map(in_run).collect(),
+                1 => Cow::Borrowed(&facings.of_triangle),
+                _ => facings.of_triangle.iter().enumerate().map(in_run).collect(),
             };
-            let run = match &buffers.found {
-                Some(found) => made.find(gpu, casters, buffers, found, reaches.as_ref(), &of_run, extrusion)?,
+            let run = match &buffers.edges {
+                Some(edges) => made.find(gpu, casters, buffers, edges, reaches.as_ref(), &of_run, extrusion)?,
                 None => {
                     let sharing = if mode == Mode::Triangles { Sharing::Prisms } else { Sharing::Silhouettes };
                     made.list(gpu, casters, buffers, reaches.as_ref(), &of_run, (extrusion, sharing))?
@@ -97,7 +97,7 @@ impl Extruded {
             };
             made.runs.push(run);
         }
-        made.faces = faces;
+        made.facings = facings;
         made.find_seconds = started.elapsed().as_secs_f64();
         Ok(made)
     }
@@ -109,10 +109,10 @@ impl Extruded {
         casters: &Casters,
         buffers: &CasterBuffers,
         reaches: Option<&wgpu::Buffer>,
-        faces: &[i8],
+        facings: &[i8],
         (extrusion, sharing): (Extrusion, Sharing),
     ) -> Result<CountedRun, GpuError> {
-        let volumes = volumes(casters, faces, extrusion, sharing);
+        let volumes = volumes(casters, facings, extrusion, sharing);
         let contents: &[u8] = bytemuck::cast_slice(&volumes.indices);
         let limit = gpu.device.limits().max_buffer_size;
         GpuError::check_limit("the buffer of shadow volumes, in bytes,", contents.len() as u64, limit)?;
@@ -132,18 +132,18 @@ impl Extruded {
         gpu: &Gpu,
         casters: &Casters,
         buffers: &CasterBuffers,
-        found: &FoundBuffers,
+        edges: &EdgeBuffers,
         reaches: Option<&wgpu::Buffer>,
-        faces: &[i8],
+        facings: &[i8],
         extrusion: Extrusion,
     ) -> Result<CountedRun, GpuError> {
-        let word = |of: &[i8]| of.iter().enumerate().fold(0, |word, (i, face)| word | ((face + 1) as u32) << (2 * i));
-        let packed: Vec<u32> = faces.chunks(16).map(word).collect();
-        let packed = storage(gpu, "faces", bytemuck::cast_slice(&packed))?;
+        let word = |of: &[i8]| of.iter().enumerate().fold(0, |word, (i, facing)| word | ((facing + 1) as u32) << (2 * i));
+        let packed: Vec<u32> = facings.chunks(16).map(word).collect();
+        let packed = storage(gpu, "facings", bytemuck::cast_slice(&packed))?;
         self.buffers.0 += 1;
         self.buffers.1 += packed.size();
         let corners = 3 * extrusion.wall_triangles();
-        let parts = casters.all.iter().zip(&found.of_caster).map(|(caster, walls)| {
+        let parts = casters.all.iter().zip(&edges.of_caster).map(|(caster, walls)| {
             let caps = 3 * caster.triangles.start as u32..3 * caster.triangles.end as u32;
             let dark_caps = if extrusion == Extrusion::Spread { caps.clone() } else { 0..0 };
             Parts { walls: corners * walls.start..corners * walls.end, caps, dark_caps }
@@ -151,8 +151,8 @@ impl Extruded {
         let bound = [
             (0, Some(&buffers.points)),
             (1, reaches),
-            (2, Some(&found.walls)),
-            (3, Some(&found.triangles)),
+            (2, Some(&edges.walls)),
+            (3, Some(&edges.triangles)),
             (4, Some(&packed)),
         ];
         let (group, binding_count) = group(gpu, &buffers.layout(gpu, self.kind.0), &bound);
@@ -166,7 +166,7 @@ impl Extruded {
 
     /// Whether a caster's edges may need two walls, where the vertex shader finds them.
     pub fn may_double(&self, caster: usize, savings: Savings) -> bool {
-        !(savings.solids && self.faces.is_solid[caster])
+        !(savings.solids && self.facings.is_solid[caster])
     }
 }
 

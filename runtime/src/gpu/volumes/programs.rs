@@ -168,9 +168,9 @@ impl VolumeRenderer<'_> {
         let text = sunbake_shaders::volume_shader(key.light, key.corners, key.of);
         let vertex = match (key.corners, key.part) {
             (VolumeCorners::Indexed, _) => "volume_vertex",
-            (VolumeCorners::Found, Part::Walls) => "wall_vertex",
-            (VolumeCorners::Found, Part::Caps) => "cap_vertex",
-            (VolumeCorners::Found, Part::DarkCaps) => "dark_cap_vertex",
+            (VolumeCorners::FromEdges, Part::Walls) => "wall_vertex",
+            (VolumeCorners::FromEdges, Part::Caps) => "cap_vertex",
+            (VolumeCorners::FromEdges, Part::DarkCaps) => "dark_cap_vertex",
         };
         let source = ShaderStages { text: &text, vertex, fragment: key.of.fragment(), attributes: &[] };
         let compare = match key.of {

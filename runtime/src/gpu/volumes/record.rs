@@ -164,7 +164,7 @@ impl VolumeRenderer<'_> {
     pub(super) fn plan(&self, view: &View, light: &Light) -> (FramePlan, VolumeDraws) {
         let VolumeSettings { mode, savings, .. } = self.settings;
         let extruded = self.extruded[light_index(light)].as_ref().expect("a light is planned once it has extruded");
-        let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.faces, light, view, mode, savings);
+        let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.facings, light, view, mode, savings);
         let draws = VolumeDraws::new(extruded, &plan, savings);
         (plan, draws)
     }

@@ -27,7 +27,7 @@ fn is_on_map(place: vec3<f32>, margin_texels: f32) -> bool {
     return place.z > 0.0 && max(abs(place.x), abs(place.y)) <= most;
 }
 
-fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, face: vec3<f32>) -> Receiver {
+fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_normal: vec3<f32>) -> Receiver {
     let matrix = shadow_maps.views[map].clip_from_point;
     let rows = transpose(matrix);
     let sun = frame.sun_direction;
@@ -39,20 +39,20 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, face: vec3
     let step_u = cross(v_per_metre, sun) / area;
     let step_v = cross(sun, u_per_metre) / area;
     // How far a corner one texel away, in u and in v, is from the receiver's plane.
-    let corner_m = (abs(dot(face, step_u)) + abs(dot(face, step_v))) * texel;
+    let corner_m = (abs(dot(geometric_normal, step_u)) + abs(dot(geometric_normal, step_v))) * texel;
     let texel_m = max(length(step_u), length(step_v)) * texel;
-    let facing = max(dot(face, sun), 1.0 / 4096.0);
+    let facing = max(dot(geometric_normal, sun), 1.0 / 4096.0);
     let raster_m = corner_m / 128.0 + length(from_eye_m) * (frame.pixel_angle_rad / 256.0 + ROUNDING);
     let off_surface_m = BIAS_NORMAL * BIAS_REACH * corner_m + raster_m;
     let towards_sun_m = BIAS_CONSTANT_M + BIAS_CONSTANT_TEXELS * texel_m + BIAS_SLOPE * BIAS_REACH * corner_m / facing;
-    let point_m = from_eye_m + shadow_maps.views[map].eye_from_origin_m + face * off_surface_m + sun * towards_sun_m;
+    let point_m = from_eye_m + shadow_maps.views[map].eye_from_origin_m + geometric_normal * off_surface_m + sun * towards_sun_m;
     let clip = matrix * vec4<f32>(point_m, 1.0);
     var at: Receiver;
     at.map = map;
     at.uv = vec2<f32>(0.5 + 0.5 * clip.x / clip.w, 0.5 - 0.5 * clip.y / clip.w);
     at.depth = clip.z / clip.w;
-    let along_u = step_u - sun * (dot(face, step_u) / facing);
-    let along_v = step_v - sun * (dot(face, step_v) / facing);
+    let along_u = step_u - sun * (dot(geometric_normal, step_u) / facing);
+    let along_v = step_v - sun * (dot(geometric_normal, step_v) / facing);
     let depth_row = rows[2].xyz - rows[3].xyz * at.depth;
     at.depth_per_uv = vec2<f32>(dot(depth_row, along_u), dot(depth_row, along_v)) / clip.w;
     at.depth -= ROUNDING * (1.0 + abs(at.depth_per_uv.x) + abs(at.depth_per_uv.y));

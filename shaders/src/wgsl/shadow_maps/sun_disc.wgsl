@@ -1,10 +1,10 @@
 // The visible share of the sun's disc from shadow maps, at most the share that is above the surface's plane and the
 // horizon.
-fn sun_visibility(varyings: Varyings, face: vec3<f32>) -> f32 {
-    let height = min(dot(face, frame.sun_direction), frame.sun_direction.y);
+fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
+    let height = min(dot(geometric_normal, frame.sun_direction), frame.sun_direction.y);
     let disc_share = clamp(0.5 + height * frame.discs_per_radian, 0.0, 1.0);
     if disc_share <= 0.0 {
         return 0.0;
     }
-    return min(disc_share, shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, face, varyings.clip.xy));
+    return min(disc_share, shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, geometric_normal, varyings.clip.xy));
 }

@@ -4,14 +4,14 @@
 // Where a map starts to give way to the next, as a share of the way to its border.
 const BLEND_FROM: f32 = 0.85;
 
-fn shadow_visibility(from_eye_m: vec3<f32>, face: vec3<f32>, pixel: vec2<f32>) -> f32 {
+fn shadow_visibility(from_eye_m: vec3<f32>, geometric_normal: vec3<f32>, pixel: vec2<f32>) -> f32 {
     let most = 1.0 - 2.0 * MAP_MARGIN_TEXELS / f32(textureDimensions(shadow_depths).x);
     for (var map = 0; map < i32(shadow_maps.count); map++) {
         let place = place_on_map(map, from_eye_m);
         if !is_on_map(place, MAP_MARGIN_TEXELS) {
             continue;
         }
-        let seen = shadow_filter(receiver_on_map(map, place, from_eye_m, face), pixel);
+        let seen = shadow_filter(receiver_on_map(map, place, from_eye_m, geometric_normal), pixel);
         let border = max(abs(place.x), abs(place.y)) / most;
         let next_share = smoothstep(BLEND_FROM, 1.0, border);
         if map + 1 == i32(shadow_maps.count) || next_share == 0.0 {
@@ -21,7 +21,7 @@ fn shadow_visibility(from_eye_m: vec3<f32>, face: vec3<f32>, pixel: vec2<f32>) -
         if !is_on_map(next_place, MAP_MARGIN_TEXELS) {
             return seen;
         }
-        let next = shadow_filter(receiver_on_map(map + 1, next_place, from_eye_m, face), pixel);
+        let next = shadow_filter(receiver_on_map(map + 1, next_place, from_eye_m, geometric_normal), pixel);
         return mix(seen, next, next_share);
     }
     return 1.0;

@@ -12,45 +12,46 @@ struct Wall {
 @group(1) @binding(2) var<storage, read> walls: array<Wall>;
 @group(1) @binding(3) var<storage, read> triangles: array<u32>;
 // How each triangle's prism counts (-1, 0 or 1) plus 1, two bits each.
-@group(1) @binding(4) var<storage, read> faces: array<u32>;
+@group(1) @binding(4) var<storage, read> facings: array<u32>;
 
 const NO_TRIANGLE: u32 = 0xffffffffu;
 const NOWHERE = vec4<f32>(0.0, 0.0, 0.0, 1.0);
 
-fn face(triangle: u32) -> i32 {
-    return i32((faces[triangle >> 4u] >> (2u * (triangle & 15u))) & 3u) - 1;
+fn facing(triangle: u32) -> i32 {
+    return i32((facings[triangle >> 4u] >> (2u * (triangle & 15u))) & 3u) - 1;
 }
 
-fn vote(along: u32) -> i32 {
-    if along == NO_TRIANGLE {
+// What a triangle along an edge adds to the winding of the edge's wall.
+fn winding_of_use(edge_use: u32) -> i32 {
+    if edge_use == NO_TRIANGLE {
         return 0;
     }
-    return select(face(along >> 1u), -face(along >> 1u), (along & 1u) == 1u);
+    return select(facing(edge_use >> 1u), -facing(edge_use >> 1u), (edge_use & 1u) == 1u);
 }
 
 // Instance k draws the walls that are there more than k times.
 @vertex
 fn wall_vertex(
     @builtin(vertex_index) index: u32,
-    @builtin(instance_index) time: u32,
+    @builtin(instance_index) copy: u32,
 ) -> @builtin(position) @invariant vec4<f32> {
     let wall = walls[index / WALL_CORNERS];
-    let times = vote(wall.first) + vote(wall.second);
-    if u32(abs(times)) <= time {
+    let winding = winding_of_use(wall.first) + winding_of_use(wall.second);
+    if u32(abs(winding)) <= copy {
         return NOWHERE;
     }
-    return corner(wall_corner(wall, index % WALL_CORNERS, times > 0));
+    return corner(wall_corner(wall, index % WALL_CORNERS, winding > 0));
 }
 
 // A corner of the cap that lies at a triangle (`extruded` 0), or at what is extruded from it and looks the other way
 // (1).
 fn cap_corner(index: u32, extruded: u32) -> vec4<f32> {
-    let facing = face(index / 3u);
-    if facing == 0 {
+    let cap_facing = facing(index / 3u);
+    if cap_facing == 0 {
         return NOWHERE;
     }
     let k = index % 3u;
-    let is_turned = (facing < 0) != (extruded == 1u);
+    let is_turned = (cap_facing < 0) != (extruded == 1u);
     return corner(extruded * point_count() + triangles[index - k + select(k, (3u - k) % 3u, is_turned)]);
 }
 
