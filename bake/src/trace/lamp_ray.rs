@@ -31,10 +31,10 @@ impl Tracer {
     }
 
     fn lamp_ray(&self, origin_m: DVec3, lamp_m: DVec3) -> Option<LampRay> {
-        let way = (lamp_m - origin_m) * self.tracer_from_bake;
-        let direction = Direction::new(way.try_normalize()?);
+        let to_lamp = (lamp_m - origin_m) * self.tracer_from_bake;
+        let direction = Direction::new(to_lamp.try_normalize()?);
         let start = self.shadow_start(origin_m, &direction);
-        Some(LampRay { start, direction, length: way.length() + self.run_up })
+        Some(LampRay { start, direction, length: to_lamp.length() + self.run_up })
     }
 
     /// Whether a ray meets a triangle and ends beyond it.

@@ -150,14 +150,14 @@ impl Reasons<'_> {
         let Some(hit) = self.shot.hits()[pixel] else { return false };
         let point_m = stage.geometry.point(hit.triangle as usize, hit.barycentric);
         let pixel_m = hit.distance_m * f64::from(self.shot.view.pixel_angle_rad);
-        let (way, length_m) = match (self.light, &self.moment.lamp) {
+        let (direction, length_m) = match (self.light, &self.moment.lamp) {
             (LightKind::Lamp, Some(lamp)) => {
                 let to_lamp_m = lamp.position_m.as_dvec3() - point_m;
                 (to_lamp_m.normalize(), to_lamp_m.length())
             }
             _ => (self.moment.sun_direction.as_dvec3(), 4.0 * stage.scene.half_extent_m.length()),
         };
-        let segment = [point_m + way * (pixel_m * f64::from(FINE_PX)), point_m + way * length_m];
+        let segment = [point_m + direction * (pixel_m * f64::from(FINE_PX)), point_m + direction * length_m];
         let passes = |[a, b]: [DVec3; 2]| between(segment, [a, b]) < pixel_m * GRAZING_PX;
         let casts = |triangle: &usize| stage.geometry.is_solid(&stage.scene, *triangle);
         (0..stage.geometry.triangles.len()).filter(casts).any(|triangle| {
@@ -174,7 +174,7 @@ impl Reasons<'_> {
             return is_lit && self.rays(pixel).any(|ray| stage.primary_hit(self.eye_m(), ray.as_dvec3()).is_none());
         }
         let ray = self.shot.ray(pixel);
-        let way = ray.as_dvec3().normalize();
+        let direction = ray.as_dvec3().normalize();
         let shown_m = self.eye_m() + ray.as_dvec3() * depth_m;
         let distance_m = depth_m * ray.as_dvec3().length();
         let near_m = distance_m * f64::from(self.shot.view.pixel_angle_rad * SURFACE_PX);
@@ -184,11 +184,11 @@ impl Reasons<'_> {
         };
         (0..stage.geometry.triangles.len()).filter(|&triangle| !stage.sides(triangle).is_none()).any(|triangle| {
             let corners_m = stage.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
-            let slant = stage.geometry.normal(triangle).dot(way);
+            let slant = stage.geometry.normal(triangle).dot(direction);
             // Rasterising moves surfaces sideways; on slanted ones that changes the depth.
             let along_m = (near_m / slant.abs().max(f64::MIN_POSITIVE)).min(near_m / f64::from(SURFACE_PX));
             let place = [0.0, 0.5, -0.5, 1.0, -1.0].into_iter().find_map(|share| {
-                let place_m = shown_m + way * (along_m * share);
+                let place_m = shown_m + direction * (along_m * share);
                 let barycentric = nearest(&corners_m, place_m);
                 let is_near = stage.geometry.point(triangle, barycentric).distance(place_m) <= near_m;
                 is_near.then_some(barycentric)

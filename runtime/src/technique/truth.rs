@@ -204,8 +204,8 @@ impl Ball {
     /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the ball's disc as seen from a
     /// point.
     fn point(&self, from_m: DVec3, i: u32, count: u32, turn: f64) -> DVec3 {
-        let Some(way) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };
-        let (across, up) = way.any_orthonormal_pair();
+        let Some(direction) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };
+        let (across, up) = direction.any_orthonormal_pair();
         let (sin, cos) = (f64::from(i) * disc::GOLDEN_ANGLE_RAD + turn).sin_cos();
         let from_centre_m = self.radius_m * ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
         self.centre_m + (across * cos + up * sin) * from_centre_m

@@ -98,21 +98,21 @@ impl Frustum {
     /// Whether a caster may hide the light from some point of the near rectangle.
     pub fn may_be_shaded_by(&self, casters: &Casters, caster: &Caster, facings: &[i8], light: &Light) -> bool {
         let reach_m = PYRAMID_MARGIN * self.near_reach_m;
-        let (way, length) = match light {
+        let (direction, length) = match light {
             Light::Sun { towards } => (*towards, f64::INFINITY),
             Light::Lamp { position_m, .. } => (*position_m - self.eye_m, 1.0),
         };
         let meets = |[low, high]: &Aabb| {
-            let (mut enters, mut leaves) = (-reach_m / way.length().max(f64::MIN_POSITIVE), length);
+            let (mut enters, mut leaves) = (-reach_m / direction.length().max(f64::MIN_POSITIVE), length);
             for k in 0..3 {
                 let [a, b] = [low[k] - reach_m - self.eye_m[k], high[k] + reach_m - self.eye_m[k]];
-                if way[k] == 0.0 {
+                if direction[k] == 0.0 {
                     if a > 0.0 || b < 0.0 {
                         return false;
                     }
                     continue;
                 }
-                let [a, b] = [a / way[k], b / way[k]];
+                let [a, b] = [a / direction[k], b / direction[k]];
                 (enters, leaves) = (enters.max(a.min(b)), leaves.min(a.max(b)));
             }
             enters <= leaves

@@ -105,18 +105,18 @@ fn is_inside(casters: &Casters, caster: &Caster, point_m: DVec3) -> bool {
         return false;
     }
     let touches = |triangle: usize| distance_m(&casters.corners_m(triangle), point_m) <= reach_m;
-    let winding = |way: &DVec3| -> i32 {
-        caster.triangles.clone().map(|triangle| crossing(&casters.corners_m(triangle), point_m, *way)).sum()
+    let winding = |direction: &DVec3| -> i32 {
+        caster.triangles.clone().map(|triangle| crossing(&casters.corners_m(triangle), point_m, *direction)).sum()
     };
-    caster.triangles.clone().any(touches) || DIRECTIONS.iter().any(|way| winding(way) != 0)
+    caster.triangles.clone().any(touches) || DIRECTIONS.iter().any(|direction| winding(direction) != 0)
 }
 
 /// +1 where a ray leaves through a triangle's front, -1 where it enters, 0 where it misses.
-fn crossing(corners: &[DVec3; 3], from: DVec3, way: DVec3) -> i32 {
+fn crossing(corners: &[DVec3; 3], from: DVec3, direction: DVec3) -> i32 {
     let [a, b, c] = corners.map(|corner| corner - from);
-    let sides = [way.dot(b.cross(a)), way.dot(c.cross(b)), way.dot(a.cross(c))];
+    let sides = [direction.dot(b.cross(a)), direction.dot(c.cross(b)), direction.dot(a.cross(c))];
     let normal = (b - a).cross(c - a);
-    let ahead = a.dot(normal) * way.dot(normal);
+    let ahead = a.dot(normal) * direction.dot(normal);
     let leaves = sides.iter().all(|&side| side < 0.0);
     let enters = sides.iter().all(|&side| side > 0.0);
     if ahead > 0.0 { i32::from(leaves) - i32::from(enters) } else { 0 }

@@ -88,8 +88,8 @@ fn cases() -> Vec<Case> {
     cases.push(Case::new("beside an endless wall", ground().soup(&wall), along, beside));
     let ball: Vec<[Vec3; 3]> = icosphere(5).iter().map(|t| t.map(|v| v * 0.7 + Vec3::Y)).collect();
     let shaded = |p: DVec3| {
-        let way = DVec3::Y - p;
-        1.0 - 0.49 * way.y / way.length().powi(3)
+        let to_sphere = DVec3::Y - p;
+        1.0 - 0.49 * to_sphere.y / to_sphere.length().powi(3)
     };
     cases.push(Case::new("under a sphere", ground().soup(&ball), at, shaded));
     cases

@@ -47,9 +47,10 @@ fn visibility_in_box(from: DVec3, normal: DVec3, half: DVec3, reach: f64) -> f64
         let radius = ((f64::from(ring) + 0.5) / f64::from(rings)).sqrt();
         for spoke in 0..spokes {
             let (sin, cos) = (f64::from(spoke) / f64::from(spokes) * TAU).sin_cos();
-            let way = across * (radius * cos) + up * (radius * sin) + normal * (1.0 - radius * radius).sqrt();
+            let direction = across * (radius * cos) + up * (radius * sin) + normal * (1.0 - radius * radius).sqrt();
             let to_wall = |k: usize| {
-                if way[k].abs() < 1e-12 { f64::INFINITY } else { (half[k] * way[k].signum() - from[k]) / way[k] }
+                let along = direction[k];
+                if along.abs() < 1e-12 { f64::INFINITY } else { (half[k] * along.signum() - from[k]) / along }
             };
             let distance = to_wall(0).min(to_wall(1)).min(to_wall(2)).max(0.0);
             hidden += (1.0 - (distance / reach).min(1.0).powi(2)).powi(2);

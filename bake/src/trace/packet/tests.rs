@@ -26,8 +26,8 @@ fn packets(check: impl Fn(&Tracer, &mut PacketTracer, &[ShadowQuery])) {
             let triangle = (random() * geometry.triangles.len() as f64) as u32;
             let point = geometry.point(triangle as usize, [random() * 0.5, random() * 0.5]);
             let normal = geometry.normal(triangle as usize);
-            let way = (axis + spread * DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5)).normalize();
-            let direction = if way.dot(normal) < 0.0 { -way } else { way };
+            let near_axis = (axis + spread * DVec3::new(random() - 0.5, random() - 0.5, random() - 0.5)).normalize();
+            let direction = if near_axis.dot(normal) < 0.0 { -near_axis } else { near_axis };
             ShadowQuery { origin_m: tracer.lift(point, normal, triangle), direction, triangle }
         };
         let queries: Vec<ShadowQuery> = (0..PACKET).map(|_| query()).collect();

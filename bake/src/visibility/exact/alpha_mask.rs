@@ -97,7 +97,7 @@ impl<'a> MaskedTriangleView<'a> {
     }
 }
 
-/// A way across a triangle's texture on which both coordinates run one way.
+/// A curve across a triangle's texture on which both coordinates run one way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Curve {
     /// Of U, V and W, from the square down; W is positive.
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::testing::pseudo_random;
 
-    /// A triangle across the sun's way that is solid, by its corners' alphas, on one side: that side is solid whether
+    /// A triangle in front of the sun that is solid, by its corners' alphas, on one side: that side is solid whether
     /// it lies ahead or behind, as it may within the run-up of rays.
     #[test]
     fn the_solid_part_does_not_depend_on_the_sign_of_the_weights() {

@@ -74,18 +74,18 @@ impl Leg {
     /// Where `axis . l >= slope |l|`.
     fn within_cone(&self, axis: DVec3, slope: f64) -> Option<Span> {
         let [first, last] = self.ends;
-        let (way, [height, high]) = (last - first, self.along(axis));
+        let (motion, [height, high]) = (last - first, self.along(axis));
         let climb = high - height;
         let slope2 = slope * slope;
         // Coefficients of (axis . l)^2 - slope^2 |l|^2 in s.
-        let a = climb * climb - slope2 * way.length_squared();
-        let b = 2.0 * (height * climb - slope2 * first.dot(way));
+        let a = climb * climb - slope2 * motion.length_squared();
+        let b = 2.0 * (height * climb - slope2 * first.dot(motion));
         let c = height * height - slope2 * first.length_squared();
         let mut ends: SmallVec<[f64; 4]> = SmallVec::from_slice(&[0.0, 1.0]);
         ends.extend(roots(a, b, c).into_iter().filter(|root| (0.0..1.0).contains(root)));
         ends.sort_by(f64::total_cmp);
         let is_inside = |s: f64| {
-            let lamp = first + way * s;
+            let lamp = first + motion * s;
             axis.dot(lamp) >= slope * lamp.length()
         };
         let inside = ends.windows(2).filter(|part| is_inside(0.5 * (part[0] + part[1])));
