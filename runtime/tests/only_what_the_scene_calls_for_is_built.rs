@@ -146,7 +146,7 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
     let (base, counted) = volume_census(ground().soup(&cube()).build(), settings, aside);
     let expected = Census {
         passes: 3,    // Depth, volumes, light.
-        pipelines: 4, // Depth, the sun's gate, the background, faces before the surface.
+        pipelines: 4, // Depth, the sun's mask, the background, faces in front of the surface.
         vertex_buffers: 2,
         bind_groups: 2, // The frame's, and the casters'.
         bindings: 3,    // The frame, materials; points.

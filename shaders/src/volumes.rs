@@ -77,12 +77,12 @@ pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) 
 /// A point light on surfaces that no volume hides from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum HardLight {
-    /// Whether the sun lights the surface: entry points `surface_vertex` and `sun_gate_fragment`.
-    SunGate,
+    /// Whether the sun lights the surface: entry points `surface_vertex` and `sun_mask_fragment`.
+    SunMask,
     /// Light of the sun: `sun_light_fragment`.
     Sun,
-    /// Whether the lamp lights the surface: `lamp_gate_fragment`.
-    LampGate,
+    /// Whether the lamp lights the surface: `lamp_mask_fragment`.
+    LampMask,
     /// Light of the lamp: `lamp_light_fragment`.
     Lamp,
 }
@@ -91,9 +91,9 @@ impl HardLight {
     /// The entry point of the fragment stage.
     pub fn fragment(self) -> &'static str {
         match self {
-            Self::SunGate => "sun_gate_fragment",
+            Self::SunMask => "sun_mask_fragment",
             Self::Sun => "sun_light_fragment",
-            Self::LampGate => "lamp_gate_fragment",
+            Self::LampMask => "lamp_mask_fragment",
             Self::Lamp => "lamp_light_fragment",
         }
     }
@@ -102,13 +102,13 @@ impl HardLight {
 /// A point light.
 pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
     let mut text = on_surface(surface, &PageVariant::default());
-    if matches!(light, HardLight::LampGate | HardLight::Lamp) {
-        text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("volumes/lamp_gate")].concat());
+    if matches!(light, HardLight::LampMask | HardLight::Lamp) {
+        text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("volumes/lamp_facing")].concat());
     }
     match light {
-        HardLight::SunGate => text.push_str(wgsl!("volumes/sun_gate_fragment")),
+        HardLight::SunMask => text.push_str(wgsl!("volumes/sun_mask_fragment")),
         HardLight::Sun => text.push_str(&[wgsl!("surface/surface"), wgsl!("volumes/sun_light_fragment")].concat()),
-        HardLight::LampGate => text.push_str(wgsl!("volumes/lamp_gate_fragment")),
+        HardLight::LampMask => text.push_str(wgsl!("volumes/lamp_mask_fragment")),
         HardLight::Lamp => {
             text.push_str(
                 &[wgsl!("lamp/shade"), wgsl!("surface/surface"), wgsl!("volumes/lamp_light_fragment")].concat(),

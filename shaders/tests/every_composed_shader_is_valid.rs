@@ -85,7 +85,7 @@ fn every_composed_shader_is_valid() {
         for sun in shadow_sources() {
             validated(&mapped_visibility_shader(surface, &sun));
         }
-        for light in [HardLight::SunGate, HardLight::Sun, HardLight::LampGate, HardLight::Lamp] {
+        for light in [HardLight::SunMask, HardLight::Sun, HardLight::LampMask, HardLight::Lamp] {
             validated(&hard_light_shader(surface, light));
         }
         for page in pages() {

@@ -35,7 +35,7 @@ pub struct LightNeeds {
 
 impl LightNeeds {
     pub fn is_lamp(&self) -> bool {
-        matches!(self.hard, HardLight::Lamp | HardLight::LampGate)
+        matches!(self.hard, HardLight::Lamp | HardLight::LampMask)
     }
 
     /// Whether counts of several runs are merged.
@@ -75,7 +75,7 @@ pub fn light_blend(output: Output, count: usize) -> LightBlend {
 pub fn hard_lights(output: Output) -> [HardLight; 2] {
     match output {
         Output::Lit => [HardLight::Sun, HardLight::Lamp],
-        Output::Visibility | Output::LampVisibility => [HardLight::SunGate, HardLight::LampGate],
+        Output::Visibility | Output::LampVisibility => [HardLight::SunMask, HardLight::LampMask],
     }
 }
 

@@ -1,6 +1,6 @@
 // A point lamp that no volume hides: 1, or 0 where the surface faces away or lies beyond its range.
 @fragment
-fn lamp_gate_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
+fn lamp_mask_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     test_alpha(varyings);
     let ray = view_ray(varyings.clip.xy);
     let geometric_normal = towards_eye(varyings.front_normal, varyings, ray);
