@@ -54,15 +54,15 @@ impl<'a> Page<'a> {
     }
 
     fn disc_visibility(&self, texel: usize, moment: &Moment) -> f32 {
-        let mut seen = 0.0;
+        let mut visibility = 0.0;
         for (lane, variant) in self.maps.lanes.iter().zip(&self.variant.lanes).filter(|(l, _)| !l.layers.is_empty()) {
-            seen += variant.weight
+            visibility += variant.weight
                 * match self.variant.is_point_sun {
                     true => hard_visibility(&lane.layers, texel, self.bits, moment.t),
                     false => soft_visibility(&lane.layers, texel, self.bits, moment.t, moment.width_t * variant.chord),
                 };
         }
-        seen
+        visibility
     }
 
     fn page_visibility(&self, page_uv: Vec2, filter: Filter, moment: &Moment) -> f32 {
@@ -100,14 +100,14 @@ impl<'a> Page<'a> {
             let is_in_front = geometric_normal.dot(moment.sun_direction) > 0.0;
             return if is_in_front { self.page_visibility(page_uv, filter, moment) } else { 0.0 };
         }
-        let disc_share = (0.5 + geometric_normal.dot(moment.sun_direction) * moment.discs_per_radian).clamp(0.0, 1.0);
+        let disc_share = (0.5 + geometric_normal.dot(moment.sun_direction) * moment.inverse_angular_diameter).clamp(0.0, 1.0);
         if disc_share <= 0.0 {
             return 0.0;
         }
         disc_share.min(self.page_visibility(page_uv, filter, moment))
     }
 
-    /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its ball above the surface's plane;
+    /// Visibility of the lamp by the maps, 0 to 1, and no more than the share of its sphere above the surface's plane;
     /// `to_lamp_m` leads from the surface to the lamp. Twin of `lamp/baked.wgsl`.
     pub fn lamp_visibility(
         &self,
@@ -118,12 +118,12 @@ impl<'a> Page<'a> {
         lamp: &LampMoment,
     ) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
-        let ball_share = (0.5 + geometric_normal.dot(to_lamp_m) * lamp.balls_per_metre()).clamp(0.0, 1.0);
-        if ball_share <= 0.0 || to_lamp_m.length_squared() > lamp.range_m * lamp.range_m {
+        let sphere_share = (0.5 + geometric_normal.dot(to_lamp_m) * lamp.inverse_diameter_per_m()).clamp(0.0, 1.0);
+        if sphere_share <= 0.0 || to_lamp_m.length_squared() > lamp.range_m * lamp.range_m {
             return 0.0;
         }
-        let seen = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
-        ball_share.min(self.filtered(page_uv, filter, seen))
+        let visibility = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
+        sphere_share.min(self.filtered(page_uv, filter, visibility))
     }
 
     /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the

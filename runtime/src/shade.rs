@@ -19,7 +19,7 @@ pub fn lit_picture(
     visibility: &Raster<f32>,
     lamp_visibility: Option<&Raster<f32>>,
 ) -> Raster<Vec3> {
-    let seen = |pixel: usize| PixelVisibility {
+    let visible = |pixel: usize| PixelVisibility {
         sun: visibility.pixels[pixel],
         lamp: lamp_visibility.map_or(0.0, |visibility| visibility.pixels[pixel]),
     };
@@ -27,7 +27,7 @@ pub fn lit_picture(
     let sky = AmbientSky::new(moment, &pages);
     let light = |(pixel, hit): (usize, &Option<Hit>)| match hit {
         None => moment.sky_color(shot.ray(pixel).normalize()),
-        Some(hit) => lit_surface(shot, moment, (&pages, &sky), pixel, hit, &seen(pixel)),
+        Some(hit) => lit_surface(shot, moment, (&pages, &sky), pixel, hit, &visible(pixel)),
     };
     let pixels = shot.hits().par_iter().enumerate().with_min_len(64).map(light).collect();
     Raster { size: shot.view.size, pixels }
@@ -89,7 +89,7 @@ fn texture_color(shot: &Shot, corners: &CornerAttributes, hit: &Hit, front: Vec3
     mips.sample(image_uv, texels.max(1.0).log2(), texture.wrap)
 }
 
-/// Light that a matt surface reflects or emits: from the sun, as far as it is visible, and ambient light.
+/// Light that a diffuse surface reflects or emits: from the sun, as far as it is visible, and ambient light.
 fn shade(material: &Material, base_color: Vec3, normal: Vec3, moment: &Moment, visibility: f32, ambient: Vec3) -> Vec3 {
     if material.is_unlit {
         return base_color + material.emissive;

@@ -71,7 +71,7 @@ fn m1_a_plane_at_a_grazing_sun_does_not_shade_itself() {
         let shots = [DVec3::new(4.1, 3.7, 5.3), DVec3::new(-5.0, 0.1, 2.0)]
             .map(|eye| Shot::new(&stage, view(&stage, eye, DVec3::new(0.0, 0.0, -0.2), SIZE)));
         // Of a disc that touches the horizon only the part above it is visible.
-        let above_horizon = (0.5 + moment.sun_direction.y * moment.discs_per_radian).min(1.0);
+        let above_horizon = (0.5 + moment.sun_direction.y * moment.inverse_angular_diameter).min(1.0);
         for (variant, size_texels) in UNTUNED.into_iter().flat_map(|v| [(v, 128), (v, 1024)]) {
             let expected = if variant == Variant::Pcss { above_horizon } else { 1.0 };
             let mut maps = ShadowMaps::new(&gpu, &stage, sized(variant, size_texels)).unwrap();

@@ -244,7 +244,7 @@ pub(crate) fn push_alpha_mask(text: &mut String, surface: SurfaceVariant, vertex
 
 /// The sum over lanes, written out: their number, layers, weights and chords are constants of the page.
 fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
-    let mut text = String::from("fn disc_visibility(texel: vec2<i32>) -> f32 {\n    var seen = 0.0;\n");
+    let mut text = String::from("fn disc_visibility(texel: vec2<i32>) -> f32 {\n    var visibility = 0.0;\n");
     let mut first = 0;
     for lane in lanes.iter().filter(|lane| lane.layer_count > 0) {
         let end = first + lane.layer_count;
@@ -253,10 +253,10 @@ fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
             if is_point_sun { ("hard", String::new()) } else { ("soft", format!(", frame.width_t * {chord:?}")) };
         let _ = writeln!(
             text,
-            "    seen += {weight:?} * {kind}_visibility(rise_map, fall_map, texel, vec2<i32>({first}, {end}), frame.t{width});"
+            "    visibility += {weight:?} * {kind}_visibility(rise_map, fall_map, texel, vec2<i32>({first}, {end}), frame.t{width});"
         );
         first = end;
     }
-    text.push_str("    return seen;\n}\n");
+    text.push_str("    return visibility;\n}\n");
     text
 }

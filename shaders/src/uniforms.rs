@@ -34,7 +34,7 @@ pub struct FrameUniform {
     /// Unit vector towards the sun.
     pub sun_direction: [f32; 3],
     /// One over the sun's angular diameter; very large for a point.
-    pub discs_per_radian: f32,
+    pub inverse_angular_diameter: f32,
     /// Irradiance of the sun on a surface that faces it, linear RGB; 1 is white on a white surface.
     pub sun_light: [f32; 3],
     #[doc(hidden)]
@@ -80,7 +80,7 @@ pub struct LampUniform {
     /// Its radius, metres.
     pub radius_m: f32,
     /// One over its diameter; very large for a point.
-    pub balls_per_metre: f32,
+    pub inverse_diameter_per_m: f32,
     /// Its range, metres; very large where it has none.
     pub range_m: f32,
     #[doc(hidden)]

@@ -121,7 +121,7 @@ fn a_sun_without_width_has_no_code_that_measures_widths() {
     for filter in [Filter::Nearest, Filter::Bilinear] {
         let texts = |page: &PageVariant| [lit_shader(surface, page, filter), visibility_shader(surface, page, filter)];
         // Looked for in what has them as well, so that the words are those that would be there.
-        for words in ["soft_visibility", "frame.width_t", "frame.discs_per_radian", "window_start", "disc_share"] {
+        for words in ["soft_visibility", "frame.width_t", "frame.inverse_angular_diameter", "window_start", "disc_share"] {
             assert!(texts(&page(false)).iter().all(|text| text.contains(words)), "{words}");
             assert!(!texts(&page(true)).iter().any(|text| text.contains(words)), "{words}");
         }
@@ -169,12 +169,12 @@ macro_rules! offsets {
 fn uniforms_have_one_layout_in_rust_and_wgsl() {
     let module = validated(&sky_shader());
     let rust = offsets!(FrameUniform: clip_from_eye, eye_m, pixel_angle_rad, ray_first, t, ray_per_column, width_t,
-        ray_per_row, sun_cos_radius, sun_direction, discs_per_radian, sun_light, sky_light, ground_light, zenith,
+        ray_per_row, sun_cos_radius, sun_direction, inverse_angular_diameter, sun_light, sky_light, ground_light, zenith,
         horizon, glow, haze);
     assert_eq!(members(&module, "Frame"), (rust, size_of::<FrameUniform>() as u32));
     let page = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
     let lit = validated(&lamp_visibility_shader(SurfaceVariant::default(), &page, Filter::Bilinear));
-    let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, balls_per_metre, range_m);
+    let rust = offsets!(LampUniform: position_m, t, light, width_t, radius_m, inverse_diameter_per_m, range_m);
     assert_eq!(members(&lit, "Lamp"), (rust, size_of::<LampUniform>() as u32));
     let page = PageVariant { ambient: AmbientModel::Sky, ..PageVariant::default() };
     let lit = validated(&lit_shader(SurfaceVariant::default(), &page, Filter::Bilinear));

@@ -135,7 +135,7 @@ fn lamp(entry: &LampEntry) -> String {
 }
 
 fn lamp_text(keys: usize, length_m: f64, radius_m: f64, duration_min: f64) -> String {
-    format!("{keys} keys, {length_m:.2} m in {duration_min:.0} minutes, a ball of radius {radius_m} m")
+    format!("{keys} keys, {length_m:.2} m in {duration_min:.0} minutes, a sphere of radius {radius_m} m")
 }
 
 fn lamp_times(manifest: &Manifest, entry: &LampEntry) -> String {

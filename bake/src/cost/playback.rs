@@ -62,11 +62,11 @@ impl PlayedMaps<'_> {
 
     /// Visible share of the disc at the point's moments.
     fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &WeightedTexels) -> Vec<f32> {
-        let discs_per_radian = 0.5 / path.angular_radius_rad.max(1e-9);
+        let inverse_angular_diameter = 0.5 / path.angular_radius_rad.max(1e-9);
         let geometric_normal = place.geometric_normal();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
         let at = |t: f64| {
-            let share = (0.5 + geometric_normal.dot(path.direction(t)) * discs_per_radian).clamp(0.0, 1.0) as f32;
+            let share = (0.5 + geometric_normal.dot(path.direction(t)) * inverse_angular_diameter).clamp(0.0, 1.0) as f32;
             if share <= 0.0 {
                 return 0.0;
             }

@@ -45,7 +45,7 @@ fn a_set_may_hold_a_lamp_and_no_sun() {
         assert!((start - 0.25).abs() <= 0.5 / 65_535.0 && end == 1.0, "{start} {end}");
     }
     let told = desk.run(&["inspect", "out/set"]).ok().stdout;
-    assert!(told.contains("3 keys, 3.00 m in 8 minutes, a ball of radius 0.1 m"), "{told}");
+    assert!(told.contains("3 keys, 3.00 m in 8 minutes, a sphere of radius 0.1 m"), "{told}");
     assert!(told.contains("1 layer; 1.00 intervals a texel, 1 at most; found by rays:64"), "{told}");
     assert!(!told.contains("it does not rise"), "{told}");
 }

@@ -56,14 +56,14 @@ pub struct Tally {
 
 impl Tally {
     /// Adds the errors of a picture of visibility, where `shows_surface`.
-    pub fn add(&mut self, seen: &Raster<f32>, reference: &Raster<f32>, shows_surface: impl Fn(usize) -> bool) {
-        for (i, (&seen, &reference)) in seen.pixels.iter().zip(&reference.pixels).enumerate() {
+    pub fn add(&mut self, visibility: &Raster<f32>, reference: &Raster<f32>, shows_surface: impl Fn(usize) -> bool) {
+        for (i, (&visibility, &reference)) in visibility.pixels.iter().zip(&reference.pixels).enumerate() {
             if !shows_surface(i) {
                 continue;
             }
-            let is_number = !(seen - reference).is_nan();
+            let is_number = !(visibility - reference).is_nan();
             self.not_numbers += u64::from(!is_number);
-            let error = if is_number { (seen - reference).abs() } else { 1.0 };
+            let error = if is_number { (visibility - reference).abs() } else { 1.0 };
             self.errors.push(error);
             let is_penumbra = (PENUMBRA[0]..=PENUMBRA[1]).contains(&reference);
             let part = if is_penumbra { &mut self.in_penumbra } else { &mut self.outside };
@@ -131,10 +131,10 @@ pub fn structural_similarity(a: &Raster<u8>, b: &Raster<u8>) -> f64 {
 mod tests {
     use super::*;
 
-    fn scored(seen: &[f32], reference: &[f32]) -> Score {
+    fn scored(visibility: &[f32], reference: &[f32]) -> Score {
         let raster = |pixels: &[f32]| Raster { size: [pixels.len() as u32, 1], pixels: pixels.to_vec() };
         let mut tally = Tally::default();
-        tally.add(&raster(seen), &raster(reference), |_| true);
+        tally.add(&raster(visibility), &raster(reference), |_| true);
         tally.score()
     }
 
@@ -159,13 +159,13 @@ mod tests {
 
     #[test]
     fn one_corrupted_pixel_moves_every_number_that_it_should() {
-        let mut seen = [1.0; 50];
-        seen[7] = 0.4;
-        let found = scored(&seen, &[1.0; 50]);
+        let mut visibility = [1.0; 50];
+        visibility[7] = 0.4;
+        let found = scored(&visibility, &[1.0; 50]);
         assert!((found.mean - 0.012).abs() < 1e-6 && (found.worst - 0.6).abs() < 1e-6);
         assert_eq!((found.wrong_share, found.penumbra), (0.02, None));
-        seen[7] = f32::NAN;
-        let found = scored(&seen, &[1.0; 50]);
+        visibility[7] = f32::NAN;
+        let found = scored(&visibility, &[1.0; 50]);
         assert_eq!((found.not_numbers, found.worst, found.wrong_share), (1, 1.0, 0.02));
     }
 

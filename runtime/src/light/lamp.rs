@@ -1,8 +1,8 @@
 //! A lamp at a moment: where it is, how bright it is, and which stretch of its path represents it.
 //!
-//! The lamp is a ball. It is represented by the stretch of its path within one radius of its centre, before and behind:
-//! its visibility is the lit share of the time in which the centre passes there. That window is the diameter over the
-//! speed, cut off at the path's start and end, and it follows the path's bends.
+//! The lamp is a sphere. It is represented by the stretch of its path within one radius of its centre, ahead and
+//! behind: its visibility is the lit share of the time in which the centre passes there. That window is the diameter
+//! over the speed, cut off at the path's start and end, and it follows the path's bends.
 //!
 //! **Brightness.** Sets do not say how bright a lamp is, so it is as bright as makes a picture readable: at half the
 //! scene's half diagonal it lights a surface that faces it like the noon sun, and it falls off with the square of
@@ -16,8 +16,8 @@ use sunbake_shaders::LampUniform;
 const REFERENCE_LIGHT: Vec3 = Vec3::new(1.9, 1.55, 1.1);
 /// The reference distance, as a share of the scene's half diagonal.
 const REFERENCE_SHARE: f64 = 0.5;
-/// Balls per metre of a point lamp.
-const POINT: f32 = 1e9;
+/// [`LampMoment::inverse_diameter_per_m`] of a point lamp: it is wholly above or below any plane.
+const POINT_INVERSE_DIAMETER_PER_M: f32 = 1e9;
 
 /// A lamp at a moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,8 +55,8 @@ impl LampMoment {
     }
 
     /// One over its diameter; very large for a point.
-    pub fn balls_per_metre(&self) -> f32 {
-        if self.radius_m > 0.0 { 0.5 / self.radius_m } else { POINT }
+    pub fn inverse_diameter_per_m(&self) -> f32 {
+        if self.radius_m > 0.0 { 0.5 / self.radius_m } else { POINT_INVERSE_DIAMETER_PER_M }
     }
 
     /// The uniform that shaders read.
@@ -67,19 +67,19 @@ impl LampMoment {
             light: self.light.into(),
             width_t: self.width_t,
             radius_m: self.radius_m,
-            balls_per_metre: self.balls_per_metre(),
+            inverse_diameter_per_m: self.inverse_diameter_per_m(),
             range_m: self.range_m,
             pad: 0.0,
         }
     }
 
-    /// Its light that a matt surface reflects, at visibility `seen`. Twin of `lamp/shade.wgsl`.
-    pub fn on(&self, base_color: Vec3, normal: Vec3, to_lamp_m: Vec3, seen: f32) -> Vec3 {
+    /// Its light that a diffuse surface reflects, at a visibility from 0 to 1. Twin of `lamp/shade.wgsl`.
+    pub fn on(&self, base_color: Vec3, normal: Vec3, to_lamp_m: Vec3, visibility: f32) -> Vec3 {
         let distance2 = to_lamp_m.length_squared().max(1e-12);
         if distance2 > self.range_m * self.range_m {
             return Vec3::ZERO;
         }
         let lambert = (normal.dot(to_lamp_m) / distance2.sqrt()).max(0.0);
-        base_color * self.light * (seen * lambert / (distance2 + self.radius_m * self.radius_m))
+        base_color * self.light * (visibility * lambert / (distance2 + self.radius_m * self.radius_m))
     }
 }

@@ -6,7 +6,7 @@
 //!
 //! **Brightness.** Noon is some thousand times brighter than dusk. The eye adapts, a picture with a fixed exposure
 //! cannot. The sun's brightness is therefore compressed by a power (`ADAPTATION`), and all light is scaled up as the
-//! light on level ground falls (`EYE`), as if the eye had adapted in part.
+//! light on level ground falls (`ADAPTATION_TO_DUSK`), as if the eye had adapted in part.
 //!
 //! **Sky.** Blue above, pale at the horizon, warm around a low sun; the ground reflects what it receives. None of this
 //! is measured. It gives the shadows a plausible light.
@@ -32,7 +32,7 @@ const AIR_DEPTH: Vec3 = Vec3::new(0.10, 0.165, 0.31);
 /// Power by which brightness is compressed.
 const ADAPTATION: f32 = 0.42;
 /// Power by which all light is scaled up as the light on level ground falls below [`NOON_LIGHT`].
-const EYE: f32 = 0.38;
+const ADAPTATION_TO_DUSK: f32 = 0.38;
 /// Luminance of the light on level ground under a high sun.
 const NOON_LIGHT: f32 = 1.9;
 /// Share of light that the ground reflects, for red, green and blue.
@@ -52,7 +52,7 @@ pub struct Moment {
     /// Angular radius of the sun's disc, in radians; 0 for a point.
     pub sun_radius_rad: f32,
     /// One over the sun's angular diameter; very large for a point.
-    pub discs_per_radian: f32,
+    pub inverse_angular_diameter: f32,
     /// The light.
     pub daylight: Daylight,
     /// The lamp in the scene, if there is one.
@@ -88,7 +88,7 @@ impl Moment {
                 width_t: 0.0,
                 sun_direction: Vec3::ZERO,
                 sun_radius_rad: 0.0,
-                discs_per_radian: POINT,
+                inverse_angular_diameter: POINT_INVERSE_ANGULAR_DIAMETER,
                 daylight,
                 lamp: None,
             };
@@ -100,7 +100,7 @@ impl Moment {
             width_t: path.width_t(t) as f32,
             sun_direction: direction.as_vec3(),
             sun_radius_rad: radius as f32,
-            discs_per_radian: if radius > 0.0 { (0.5 / radius) as f32 } else { POINT },
+            inverse_angular_diameter: if radius > 0.0 { (0.5 / radius) as f32 } else { POINT_INVERSE_ANGULAR_DIAMETER },
             daylight: Daylight::at_height(direction.y as f32),
             lamp: None,
         }
@@ -141,7 +141,7 @@ impl Moment {
             ray_per_row: view.ray_per_row.into(),
             sun_cos_radius: self.sun_cos_radius(),
             sun_direction: self.sun_direction.into(),
-            discs_per_radian: self.discs_per_radian,
+            inverse_angular_diameter: self.inverse_angular_diameter,
             sun_light: light.sun_light.into(),
             sky_light: light.sky_light.into(),
             ground_light: light.ground_light.into(),
@@ -158,8 +158,8 @@ impl Moment {
     }
 }
 
-/// Discs per radian of a point sun: it is wholly above or below any plane.
-const POINT: f32 = 1e9;
+/// [`Moment::inverse_angular_diameter`] of a point sun: it is wholly above or below any plane.
+const POINT_INVERSE_ANGULAR_DIAMETER: f32 = 1e9;
 
 impl Daylight {
     /// Light when the sine of the sun's elevation is `height`.
@@ -190,7 +190,7 @@ impl Daylight {
 
     /// The same light, as seen by an eye that has adapted to the light on level ground.
     fn exposed_for(self, on_level_ground: f32) -> Self {
-        let gain = (NOON_LIGHT / on_level_ground.max(0.02)).powf(EYE).max(1.0);
+        let gain = (NOON_LIGHT / on_level_ground.max(0.02)).powf(ADAPTATION_TO_DUSK).max(1.0);
         Self {
             sun_light: self.sun_light * gain,
             sky_light: self.sky_light * gain,

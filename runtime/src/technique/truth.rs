@@ -6,8 +6,8 @@
 //!   each pixel; it gives the share that reaches the sun. Only parts of the disc above the world's horizon and above
 //!   the surface's plane count.
 //!
-//! For a lamp it is the same: one ray to its centre, or many over the disc that its ball shows to the point. A ray ends
-//! at the lamp.
+//! For a lamp it is the same: one ray to its centre, or many over the disc that its sphere shows to the point. A ray
+//! ends at the lamp.
 //!
 //! The two are never mixed: a hard technique is compared with hard truth, a soft one with soft truth. Nothing is kept
 //! between frames. The error of soft truth is its sampling: with N rays a half-covered disc is right to about 1/N.
@@ -45,7 +45,7 @@ impl Truth {
         stage: &Stage,
         &ShadowRayOrigin { geometric_normal, on_plane_m, point_m, origin_m }: &ShadowRayOrigin,
         pixel: usize,
-        lamp: &Ball,
+        lamp: &Sphere,
     ) -> f32 {
         if point_m.distance(lamp.centre_m) > lamp.range_m {
             return 0.0;
@@ -71,7 +71,7 @@ impl Truth {
         point.origin_m -= back_m;
         match (light, &stage.path, &moment.lamp) {
             (LightKind::Sun, Some(path), _) => Self::Hard.sun_visibility_from(stage, &point, 0, &sun_of(path, moment)),
-            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_visibility_from(stage, &point, 0, &ball_of(lamp)),
+            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_visibility_from(stage, &point, 0, &sphere_of(lamp)),
             _ => 0.0,
         }
     }
@@ -155,7 +155,7 @@ impl Technique for Truth {
     }
 
     fn lamp_visibility(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<f32>, GpuError> {
-        let lamp = moment.lamp.as_ref().map(ball_of);
+        let lamp = moment.lamp.as_ref().map(sphere_of);
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &lamp) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
@@ -179,9 +179,9 @@ fn sun_of(path: &SunPath, moment: &Moment) -> SunDisc {
     SunDisc::new(path.direction(f64::from(moment.t)), path.angular_radius_rad)
 }
 
-fn ball_of(lamp: &LampMoment) -> Ball {
+fn sphere_of(lamp: &LampMoment) -> Sphere {
     let [radius_m, range_m] = [lamp.radius_m, lamp.range_m].map(f64::from);
-    Ball { centre_m: lamp.position_m.as_dvec3(), radius_m, range_m }
+    Sphere { centre_m: lamp.position_m.as_dvec3(), radius_m, range_m }
 }
 
 /// A light of a stage.
@@ -194,14 +194,14 @@ pub enum LightKind {
 }
 
 /// A lamp's shape and reach.
-struct Ball {
+struct Sphere {
     centre_m: DVec3,
     radius_m: f64,
     range_m: f64,
 }
 
-impl Ball {
-    /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the ball's disc as seen from a
+impl Sphere {
+    /// Where ray `i` of `count` goes, the spiral turned by `turn`: even by area over the sphere's disc as seen from a
     /// point.
     fn point(&self, from_m: DVec3, i: u32, count: u32, turn: f64) -> DVec3 {
         let Some(direction) = (self.centre_m - from_m).try_normalize() else { return self.centre_m };

@@ -11,10 +11,10 @@ fn sky_light_at(texel: vec2<i32>, side: i32) -> vec3<f32> {
     var light = vec3<f32>(0.0);
     for (var k = 0; k < 3; k++) {
         let codes = vec4<f32>(textureLoad(sky_map, texel, 3 * side + k, 0));
-        let seen = (codes - 32768.0) / 32767.0;
-        light += sky.coefficients[3 * k].xyz * seen.x;
-        light += sky.coefficients[3 * k + 1].xyz * seen.y;
-        light += sky.coefficients[3 * k + 2].xyz * seen.z;
+        let visibility = (codes - 32768.0) / 32767.0;
+        light += sky.coefficients[3 * k].xyz * visibility.x;
+        light += sky.coefficients[3 * k + 1].xyz * visibility.y;
+        light += sky.coefficients[3 * k + 2].xyz * visibility.z;
     }
     return light;
 }

@@ -14,7 +14,7 @@ struct Frame {
     ray_per_row: vec3<f32>,
     sun_cos_radius: f32,
     sun_direction: vec3<f32>,
-    discs_per_radian: f32,
+    inverse_angular_diameter: f32,
     sun_light: vec3<f32>,
     sky_light: vec3<f32>,
     ground_light: vec3<f32>,

@@ -5,7 +5,7 @@ struct Lamp {
     light: vec3<f32>,
     width_t: f32,
     radius_m: f32,
-    balls_per_metre: f32,
+    inverse_diameter_per_m: f32,
     range_m: f32,
 }
 

@@ -2,7 +2,7 @@
 // horizon.
 fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
     let height = min(dot(geometric_normal, frame.sun_direction), frame.sun_direction.y);
-    let disc_share = clamp(0.5 + height * frame.discs_per_radian, 0.0, 1.0);
+    let disc_share = clamp(0.5 + height * frame.inverse_angular_diameter, 0.0, 1.0);
     if disc_share <= 0.0 {
         return 0.0;
     }

@@ -7,6 +7,6 @@ fn lit_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     let ambient = ambient_light(varyings.page_uv, at.normal, side_of_page(varyings, at.ray));
     let light = shade(at.material, at.base_color, at.normal, visibility, ambient);
     let to_lamp_m = to_lamp_from(varyings, at.ray);
-    let seen = lamp_visibility(varyings.page_uv, at.geometric_normal, to_lamp_m);
-    return vec4<f32>(light + lamp_shade(at.material, at.base_color, at.normal, to_lamp_m, seen), 1.0);
+    let visibility_of_lamp = lamp_visibility(varyings.page_uv, at.geometric_normal, to_lamp_m);
+    return vec4<f32>(light + lamp_shade(at.material, at.base_color, at.normal, to_lamp_m, visibility_of_lamp), 1.0);
 }
