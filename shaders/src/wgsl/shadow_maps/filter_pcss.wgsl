@@ -25,13 +25,13 @@ fn blocker_distance_m(at: Receiver, slope: f32, metres_per_depth: f32, turn_rad:
     var sum_m = 0.0;
     var count = 0.0;
     for (var i = 0u; i < BLOCKER_TAPS; i++) {
-        let ato_lamp_m = on_spiral(i, BLOCKER_TAPS, turn_rad) * reach_m;
-        let texel = clamp(floor((at.uv + ato_lamp_m / at.metres_per_uv) * size), vec2<f32>(0.0), vec2<f32>(size - 1.0));
+        let offset_m = on_spiral(i, BLOCKER_TAPS, turn_rad) * reach_m;
+        let texel = clamp(floor((at.uv + offset_m / at.metres_per_uv) * size), vec2<f32>(0.0), vec2<f32>(size - 1.0));
         let stored = textureLoad(shadow_depths, vec2<i32>(texel), at.map, 0);
-        let before_m = (depth_at(at, (texel + 0.5) / size) - stored) * metres_per_depth;
+        let in_front_m = (depth_at(at, (texel + 0.5) / size) - stored) * metres_per_depth;
         // What stands beside the cone of the sun's rays hides none of them.
-        if before_m > 0.0 && length(ato_lamp_m) <= before_m * slope + 1.5 * texel_m {
-            sum_m += before_m;
+        if in_front_m > 0.0 && length(offset_m) <= in_front_m * slope + 1.5 * texel_m {
+            sum_m += in_front_m;
             count += 1.0;
         }
     }

@@ -1,3 +1,4 @@
+// Alpha of the texture at the nearest texel of its first level, wrapped as the material says.
 fn texel_alpha(varyings: Varyings, material: Material) -> f32 {
     let size = vec2<i32>(textureDimensions(base_texture));
     let index = vec2<i32>(floor(varyings.image_uv * vec2<f32>(size)));

@@ -1,3 +1,4 @@
+// Alpha of a material without a texture.
 fn texel_alpha(varyings: Varyings, material: Material) -> f32 {
     return 1.0;
 }
