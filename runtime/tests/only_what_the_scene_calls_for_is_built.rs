@@ -159,7 +159,7 @@ fn volumes_of_a_box_take_one_pipeline_and_two_buffers_and_each_need_adds_its_own
     };
     // The ground shades nothing, so it casts no volume.
     assert_eq!((base, counted), (expected, [1, 0]));
-    // An eye in the box's shadow needs faces behind the surface, and no longer those before it.
+    // An eye in the box's shadow needs faces behind the surface, and no longer those in front of it.
     let in_shadow = DVec3::new(0.3, -0.5, 0.3);
     let (found, counted) = volume_census(SceneBuilder::new().soup(&cube()).build(), settings, in_shadow);
     assert_eq!((found.stencil_pipelines, counted), (1, [0, 1]));

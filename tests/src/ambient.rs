@@ -30,7 +30,7 @@ pub fn flat(surface: SurfacePoint) -> AmbientPoint {
 }
 
 /// Cosine-weighted share of the hemisphere about a normal that a polygon takes, as seen from `from`: Lambert's
-/// formula, of polygons that lie wholly before the plane (Arvo, *Analytic Methods for Simulated Light Transport*,
+/// formula, of polygons that lie wholly in front of the plane (Arvo, *Analytic Methods for Simulated Light Transport*,
 /// 1995, chapter 3).
 pub fn share_of_polygon(from: DVec3, normal: DVec3, polygon: &[DVec3]) -> f64 {
     let directions: Vec<DVec3> = polygon.iter().map(|corner| (*corner - from).normalize()).collect();

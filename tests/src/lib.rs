@@ -73,7 +73,7 @@ impl Traced {
         [(rays, 1.0 / count as f64), (exact, 1e-9)]
     }
 
-    /// Where a point's rays towards suns before it start, in world space.
+    /// Where a point's rays towards suns in front of it start, in world space.
     pub fn start(&self, point: &SurfacePoint) -> DVec3 {
         self.tracer.lift(point.position_m, point.normal, point.triangle) + self.scene.centre_m
     }

@@ -1,9 +1,9 @@
 //! Brute force in `f64`: which of many suns a point sees, asked of every triangle.
 //!
-//! Theory: a sun is seen if it is above the horizon and before the surface, and no triangle meets the ray towards it.
-//! The triangle test is "Fast, Minimum Storage Ray/Triangle Intersection" (Moeller and Trumbore, *Journal of Graphics
-//! Tools* 2(1), 1997), on the `f32` corners in bake space. It shares no code and no hierarchy with the tracer, and
-//! starts where the tracer says that its shadow rays start: at [`Tracer::lift`], and [`Tracer::run_up_m`] back.
+//! Theory: a sun is seen if it is above the horizon and in front of the surface, and no triangle meets the ray towards
+//! it. The triangle test is "Fast, Minimum Storage Ray/Triangle Intersection" (Moeller and Trumbore, *Journal of
+//! Graphics Tools* 2(1), 1997), on the `f32` corners in bake space. It shares no code and no hierarchy with the tracer,
+//! and starts where the tracer says that its shadow rays start: at [`Tracer::lift`], and [`Tracer::run_up_m`] back.
 //!
 //! Practice: a thousand points, 65,536 suns and 600,000 triangles are too many for each with each. But a triangle
 //! lies in a ball, a ball in a cone of directions, and that cone meets an arc of the sun in one window of hour
@@ -95,7 +95,7 @@ impl<'a> Oracle<'a> {
         points.par_iter().map(|point| self.lit(point)).collect()
     }
 
-    /// Suns before a side of the surface that nothing hides.
+    /// Suns in front of a side of the surface that nothing hides.
     fn seen_from(&self, point: &SurfacePoint, side: DVec3) -> Vec<bool> {
         let mut seen: Vec<bool> = self.suns.iter().map(|sun| sun.y > 0.0 && side.dot(*sun) > 0.0).collect();
         let origin = self.here.tracer.lift(point.position_m, side, point.triangle);

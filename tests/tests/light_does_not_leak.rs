@@ -175,7 +175,7 @@ fn an_open_box_lets_light_in_by_its_lid_only() {
     }
 }
 
-/// B8: on a convex solid nothing shades anything: each facet is lit while the sun is before its plane.
+/// B8: on a convex solid nothing shades anything: each facet is lit while the sun is in front of its plane.
 #[test]
 fn a_sphere_of_80_facets_has_a_clean_terminator() {
     const STEPS: usize = 512;

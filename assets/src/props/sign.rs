@@ -32,7 +32,7 @@ pub(crate) fn sign() -> Soup {
     soup
 }
 
-/// A panel 0.42 m before the mast's axis, its face towards +Z with the whole texture on it.
+/// A panel 0.42 m in front of the mast's axis, its face towards +Z with the whole texture on it.
 fn panel(face: Material, half_m: DVec2, thick_m: f64) -> Soup {
     let mut soup = Soup::default();
     let (front_m, back_m) = (0.42 + thick_m, 0.42);

@@ -70,7 +70,7 @@ fn look(p_m: DVec3, normal: DVec3) -> Material {
     if p_m.y < SILL_M { Material::StuccoTurquoise } else { Material::Stucco }
 }
 
-/// Frames in all windows, doors that stand open, bars before the back window.
+/// Frames in all windows, doors that stand open, bars in front of the back window.
 pub(crate) fn joinery() -> Soup {
     let mut soup = Soup::default();
     for (x, y, panes) in FRONT_WINDOWS {
@@ -139,7 +139,7 @@ pub(crate) fn awning() -> Soup {
     soup
 }
 
-/// A fixed ladder to the roof; the wall is the plane z = 0, the ladder stands before it in +Z.
+/// A fixed ladder to the roof; the wall is the plane z = 0, the ladder stands in front of it in +Z.
 pub(crate) fn ladder() -> Soup {
     let mut soup = Soup::default();
     for x_m in [-0.23, 0.23] {

@@ -5,8 +5,8 @@
 //! (`visibility/lamp`). Paths are read from path files (`parse.rs`).
 //!
 //! The lamp is a sphere. Playback treats it as a line along its own path, as it treats the sun (GPU Gems, chapter 13,
-//! "linear light"). At `t` the line is the part of the path within one radius before and behind the centre. The lamp's
-//! visibility is the lit share of the time in which the centre passes that part ([`LampPath::window_t`]).
+//! "linear light"). At `t` the line is the part of the path within one radius ahead of and behind the centre. The
+//! lamp's visibility is the lit share of the time in which the centre passes that part ([`LampPath::window_t`]).
 
 mod parse;
 

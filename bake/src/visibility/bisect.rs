@@ -8,7 +8,7 @@
 //! between them has its own positions of the sun: its two ends, and those of the N that fall inside it (the first of
 //! the N at t = 0, the last at t = 1). Every change from one position to the next is bisected until both sides are
 //! `2 * edge_seconds` apart, and the edge is put in the middle. While bisecting, the occluder of the dark side is
-//! tested before the hierarchy is walked: the edge is mostly its.
+//! tested before the hierarchy is walked: it usually causes the edge.
 //!
 //! What is missed: light or shade that begins and ends between two neighbouring positions, so anything shorter than
 //! `1/(N - 1)` of the path may be missed; and of three changes between two positions one is found. Edges that are found
@@ -65,14 +65,14 @@ impl BisectLane {
 
     /// Spans in which the sun is above the horizon and in front of a side of the point, with that side.
     fn spans(&self, point: &SurfacePoint) -> Vec<([f64; 2], SurfaceSide)> {
-        let before = self.path.above_plane(point.normal);
+        let in_front = self.path.above_plane(point.normal);
         let of_side = |when: &Intervals, side| {
             let up = when.intersection(&self.above_horizon);
             up.as_slice().iter().map(|&span| (span, side)).collect::<Vec<_>>()
         };
-        let mut spans = of_side(&before, SurfaceSide::Front);
+        let mut spans = of_side(&in_front, SurfaceSide::Front);
         if point.is_double_sided {
-            spans.extend(of_side(&gaps(&before), SurfaceSide::Back));
+            spans.extend(of_side(&gaps(&in_front), SurfaceSide::Back));
         }
         spans
     }

@@ -12,7 +12,7 @@ fn a_lamp_passes_behind_a_wall() {
     let here = Here::new(SceneBuilder::new().soup(&ground()).soup(&wall([-1.0, 0.0], [1.0, 3.0], 0.0)));
     let lamp = here.lamp(&[[-6.0, 1.0, -2.0], [6.0, 1.0, -2.0]]);
     agree("wall", &here, &lamp, &here.points(2, 60, 1));
-    // Straight through: from (0, 0, 2), edges at x = -1 and 1 stand before x = -2 and 2 of the lamp's line.
+    // Straight through: from (0, 0, 2), edges at x = -1 and 1 hide x = -2 and 2 of the lamp's line.
     let mut point = here.point(0, [0.3, 0.3]);
     point.position_m = DVec3::new(0.0, 0.0, 2.0) - here.scene.centre_m;
     let lit = agree("wall, trigonometry", &here, &lamp, &[point]);
@@ -125,7 +125,7 @@ fn shadows_shorter_than_a_step_are_found() {
     point.position_m = DVec3::new(0.001, 0.0, 2.0) - here.scene.centre_m;
     let lit = agree("wire", &here, &lamp, &[point]);
     let ends: Vec<f64> = lit[0].as_slice().iter().flatten().copied().collect();
-    // From (0.001, 0, 2) the wire's edges at x = ±0.0001 stand before x = -0.001 ± 0.0002 of the lamp's line.
+    // From (0.001, 0, 2) the wire's edges at x = ±0.0001 hide x = -0.001 ± 0.0002 of the lamp's line.
     let expected = [0.0, (4.0 - 0.0012) / 8.0, (4.0 - 0.0008) / 8.0, 1.0];
     assert_eq!(ends.len(), 4, "{ends:?}");
     for (found, expected) in ends.iter().zip(expected) {

@@ -58,7 +58,7 @@ fn lanes_count_against_the_memory_limit() {
     desk.run(&arguments).fails("five lanes", 3, &["in 5 lanes", "--lanes", "--max-memory"]);
 }
 
-/// Five posts before a floor of half a metre: texels behind them are lit in more than four pieces.
+/// Five posts in front of a floor of half a metre: texels behind them are lit in more than four pieces.
 fn fence() -> Vec<u8> {
     let mut json = floor();
     let mut positions = vec![];

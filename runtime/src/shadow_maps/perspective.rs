@@ -120,7 +120,8 @@ mod tests {
         }
     }
 
-    /// Suns before the camera, behind it, beside it and overhead, and one on either side of where they change over.
+    /// Suns in front of the camera, behind it, beside it and overhead, and one on either side of where they change
+    /// over.
     fn suns(case: &Case) -> Vec<DVec3> {
         let (view, _) = maps(case, DVec3::Y, false);
         let forward = view.forward.as_dvec3();

@@ -66,13 +66,13 @@ impl Bodies {
         let windings =
             Windings { corners_m, triangle_of_flat: &triangle_of_flat, of_triangle: &self.of_triangle, tracer };
         let in_closed = |&triangle: &usize| is_closed[self.of_triangle[triangle] as usize];
-        let before: Vec<(u32, bool)> = (0..corners_m.len())
+        let outside: Vec<(u32, bool)> = (0..corners_m.len())
             .into_par_iter()
             .filter(in_closed)
-            .map(|triangle| (self.of_triangle[triangle], windings.before_front(triangle) >= 0))
+            .map(|triangle| (self.of_triangle[triangle], windings.winding_in_front_of(triangle) >= 0))
             .collect();
         let mut found = vec![[false; 2]; is_closed.len()];
-        for (body, is_outside) in before {
+        for (body, is_outside) in outside {
             found[body as usize][usize::from(is_outside)] = true;
         }
         for ((shape, found), is_closed) in self.shapes.iter_mut().zip(found).zip(is_closed) {
@@ -95,7 +95,7 @@ struct Windings<'a> {
 
 impl Windings<'_> {
     /// The winding number of a triangle's own body in front of the triangle: the median of up to three rays.
-    fn before_front(&self, triangle: usize) -> i32 {
+    fn winding_in_front_of(&self, triangle: usize) -> i32 {
         let first = self.along(triangle, TILTS[0]);
         if first >= 0 {
             return first;

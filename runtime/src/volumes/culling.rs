@@ -238,7 +238,7 @@ impl Targets {
                 let overlaps = |k: usize| target_low[k] <= high[k] && low[k] <= target_high[k];
                 overlaps(0) && overlaps(1) && target_low.z <= high.z
             });
-            is_across && !is_before_plane(caster, &self.bounds[i], light)
+            is_across && !is_in_front_of_plane(caster, &self.bounds[i], light)
         })
     }
 
@@ -272,7 +272,7 @@ fn in_sun_frame(bounds: &Aabb, towards: DVec3) -> Aabb {
 }
 
 /// Whether a box lies on the plane of a flat caster or on the light's side of it, where the caster casts no shadow.
-fn is_before_plane(caster: &Caster, bounds: &Aabb, light: &Light) -> bool {
+fn is_in_front_of_plane(caster: &Caster, bounds: &Aabb, light: &Light) -> bool {
     let Some((normal, offset_m)) = caster.plane else { return false };
     let side = match light {
         Light::Sun { towards } => towards.dot(normal),

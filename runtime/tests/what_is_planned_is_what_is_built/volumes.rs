@@ -45,7 +45,7 @@ fn volumes_build_what_is_planned_and_each_need_adds_its_own() {
     let (base, base_plan) = under_volumes(&gpu, &stage(with_box), settings, ASIDE, Output::Lit);
     let expected = Census {
         passes: 4,    // Depth, all around, volumes, light.
-        pipelines: 5, // Depth, all around, sky, the sun's light, faces before the surface.
+        pipelines: 5, // Depth, all around, sky, the sun's light, faces in front of the surface.
         vertex_buffers: 2,
         bind_groups: 2, // The frame's, and the casters'.
         bindings: 3,
@@ -65,7 +65,7 @@ fn volumes_build_what_is_planned_and_each_need_adds_its_own() {
     let adds = Census { pipelines: 1, stencil_pipelines: 1, ..Census::default() };
     assert_eq!(found.beyond(&base), Census { volume_bytes: bytes, ..adds });
     assert_eq!(plan.need("z-fail").unwrap().takes, adds);
-    // An eye in the shadow: behind, and no longer before.
+    // An eye in the shadow: behind, and no longer in front.
     let alone = Stage::plain(SceneBuilder::new().soup(&cube(0.0)).build(), sun(0.0));
     let (found, plan) = under_volumes(&gpu, &alone, settings, DVec3::new(0.3, -0.5, 0.3), Output::Lit);
     assert!(plan.is_on("z-fail") && !plan.is_on("z-pass"));

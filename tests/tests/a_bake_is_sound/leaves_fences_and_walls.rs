@@ -76,8 +76,8 @@ fn a_picket_fence_reports_what_one_layer_loses() {
     assert!(enough.atlases[0].lanes[0].layers.len() as u64 == enough.stats.most_intervals.div_ceil(4));
 }
 
-/// B6: the sun rises behind a wall that stands on a floor. No texel before it is lit earlier than the wall's height
-/// allows, at any density of texels.
+/// B6: the sun rises behind a wall that stands on a floor. No texel in front of it is lit earlier than the wall's
+/// height allows, at any density of texels.
 #[test]
 fn no_texel_before_a_wall_is_lit_too_early_at_any_density() {
     let folder = temporary();
@@ -112,7 +112,7 @@ fn no_texel_before_a_wall_is_lit_too_early_at_any_density() {
                 let start = texel.lit.first().map_or(1.0, |lit| lit[0]);
                 assert!(start >= earliest, "{kind} at {texels_per_metre} texels/m: {texel:?} before {earliest}");
             }
-            assert!(count >= 8, "{kind} at {texels_per_metre} texels/m has {count} texels before the wall");
+            assert!(count >= 8, "{kind} at {texels_per_metre} texels/m has {count} texels in front of the wall");
         }
     }
 }

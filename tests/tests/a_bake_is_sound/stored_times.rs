@@ -24,8 +24,8 @@ fn stored_times_agree_with_brute_force_within_a_code_step() {
     for texel in draw(&set, 300, 5).expect("the scene loads") {
         let is_lit = |t: f64| {
             let sun = sun_of(arc, t);
-            let before = DVec3::from(texel.normal).dot(sun) > 0.0;
-            let origin = if before { Some(texel.origin) } else { texel.origin_back };
+            let is_in_front = DVec3::from(texel.normal).dot(sun) > 0.0;
+            let origin = if is_in_front { Some(texel.origin) } else { texel.origin_back };
             sun.y > 0.0 && origin.is_some_and(|o| !triangles.iter().any(|c| hits(o.into(), sun, c)))
         };
         let ends = texel.lit.as_flattened();

@@ -34,8 +34,8 @@ fn triangles_through_the_point_hide_what_brute_force_says() {
     let moved = |by: Vec3| wall(0.0).map(|v| v + by);
     let named: [(&str, [Vec3; 3]); 8] = [
         ("containing the surface point", wall(0.0)),
-        ("a nanometre before it", wall(1e-9)),
-        ("a tenth of a millimetre before it", wall(1e-4)),
+        ("a nanometre in front of it", wall(1e-9)),
+        ("a tenth of a millimetre in front of it", wall(1e-4)),
         ("containing the ray's start", moved(at_the_start)),
         ("a corner at the surface point", moved(Vec3::new(0.0, 1.0, 1.0))),
         ("in a plane with the point, above it", moved(Vec3::new(0.0, 3.0, 0.0))),

@@ -6,9 +6,9 @@
 //! spans. A triangle occludes the intersection of the spans of its three edges (`solve.rs`), and all triangles occlude
 //! the union. So every rise and fall time is exact to the rounding of an `f64`, and nothing is too short to be found.
 //!
-//! **Practice.** A query starts with what of the arc lies above the horizon and before the surface, as a list of gaps
-//! (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then a
-//! sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that
+//! **Practice.** A query starts with what of the arc lies above the horizon and in front of the surface, as a list of
+//! gaps (`gaps.rs`), and occluders close them. First come those that closed gaps at the point before (`seeds.rs`). Then
+//! a sixteen-wide hierarchy (`trace/bvh16.rs`) is walked, near things first (`walk.rs`), past boxes and triangles that
 //! cannot occlude anything still lit: sixteen at once, in `f32`, padded, by products with planes (`boxes.rs`).
 //! Triangles that pass are collected and solved eight at a time in `f64`. Lanes of a disc differ by declination alone:
 //! one walk serves all, with a shell of cones for its cone. Across alpha-masked triangles the sun is followed from

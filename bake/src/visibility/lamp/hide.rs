@@ -1,10 +1,10 @@
 //! On which part of a segment a triangle occludes the lamp.
 //!
 //! Theory: let the corners v be relative to the point, `n_i = v_i x v_(i+1)` turned so that `V = v0 . (v1 x v2) > 0`,
-//! and N their sum. The ray to the lamp l passes inside the triangle where all `n_i . l >= 0`, and meets its plane
-//! before the lamp where `N . l >= V`. On a segment `l(s) = l0 + s (l1 - l0)`, so all four are linear in s, and what is
-//! hidden is one span in closed form. Watertight, since `a x b` and `b x a` are exact opposites: neighbours end at the
-//! same number.
+//! and N their sum. The ray to the lamp l passes inside the triangle where all `n_i . l >= 0`, and meets its plane in
+//! front of the lamp where `N . l >= V`. On a segment `l(s) = l0 + s (l1 - l0)`, so all four are linear in s, and what
+//! is hidden is one span in closed form. Watertight, since `a x b` and `b x a` are exact opposites: neighbours end at
+//! the same number.
 //!
 //! Two departures keep rounding from deciding. A lamp within the run-up r of shadow rays behind a triangle is not
 //! occluded by it, `N . l >= V + r |N|`: a lamp that moves along a wall is visible from both sides, and rounding does

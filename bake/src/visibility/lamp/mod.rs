@@ -93,7 +93,7 @@ impl LampSession<'_> {
         let LampEngine { tracer, segments, .. } = self.engine;
         let segment = &segments[index];
         let normal = if side == 0 { point.normal } else { -point.normal };
-        let mut open = OpenSpans::new(before_plane(segment, point.position_m, normal));
+        let mut open = OpenSpans::new(in_front_of_plane(segment, point.position_m, normal));
         if open.is_empty() {
             return;
         }
@@ -132,8 +132,8 @@ impl LampSession<'_> {
     }
 }
 
-/// Where on a segment the lamp is before a side of a plane.
-fn before_plane(segment: &LampSegment, position_m: DVec3, normal: DVec3) -> Option<Span> {
+/// Where on a segment the lamp is in front of a side of a plane.
+fn in_front_of_plane(segment: &LampSegment, position_m: DVec3, normal: DVec3) -> Option<Span> {
     let heights = segment.ends_m.map(|end| normal.dot(end - position_m));
     not_negative(heights).filter(|_| heights.iter().any(|height| *height > 0.0))
 }

@@ -35,8 +35,8 @@ impl VolumeDraws {
 
     /// All draws, and whether each is counted in front of the surface.
     pub fn all(&self) -> impl Iterator<Item = (&FaceDraw, bool)> {
-        self.runs.iter().flat_map(|[before, behind]| {
-            before.iter().map(|draw| (draw, true)).chain(behind.iter().map(|draw| (draw, false)))
+        self.runs.iter().flat_map(|[in_front, behind]| {
+            in_front.iter().map(|draw| (draw, true)).chain(behind.iter().map(|draw| (draw, false)))
         })
     }
 

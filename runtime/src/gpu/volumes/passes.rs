@@ -38,9 +38,9 @@ impl VolumeRenderer<'_> {
         let [left, top, width, height] = plan.scissor;
         pass.set_scissor_rect(left, top, width, height);
         pass.set_stencil_reference(EARLIER_RUN);
-        for (i, (run, [before, behind])) in extruded.runs.iter().zip(&draws.runs).enumerate() {
+        for (i, (run, [in_front, behind])) in extruded.runs.iter().zip(&draws.runs).enumerate() {
             pass.set_bind_group(0, &self.scene.frame.group, &[]);
-            for (draws, is_z_pass) in [(before, true), (behind, false)] {
+            for (draws, is_z_pass) in [(in_front, true), (behind, false)] {
                 for draw in draws {
                     let key = face_key(extruded, draw.part, VolumeUse::Stencil, is_z_pass);
                     draw_faces(&mut pass, run, draw, program(VolumeProgram::Faces(key)));
@@ -111,8 +111,8 @@ impl VolumeRenderer<'_> {
         let [left, top, width, height] = plan.scissor;
         pass.set_scissor_rect(left, top, width, height);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        for (run, [before, behind]) in extruded.runs.iter().zip(&draws.runs) {
-            for draw in before.iter().chain(behind) {
+        for (run, [in_front, behind]) in extruded.runs.iter().zip(&draws.runs) {
+            for draw in in_front.iter().chain(behind) {
                 let key: FaceKey = face_key(extruded, draw.part, of, false);
                 let program = self.programs.get(&VolumeProgram::Faces(key), picture.format);
                 draw_faces(&mut pass, run, draw, program);
