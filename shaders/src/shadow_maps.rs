@@ -1,7 +1,7 @@
 //! Shaders of shadow maps, and of surfaces that read them.
 
 use crate::compose::{end_of_lit, on_surface, wgsl};
-use crate::uniforms::MOST_SHADOW_VIEWS;
+use crate::uniforms::MOST_SHADOW_MAPS;
 use crate::vertex::{DEPTH_VERTEX_WGSL, surface_vertex_wgsl};
 use crate::{Filter, PageVariant, SurfaceVariant};
 use std::fmt::Write;
@@ -34,7 +34,7 @@ pub enum ShadowTap {
 
 /// Which map a point is looked up on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ShadowViews {
+pub enum ShadowMapChoice {
     /// There is only one.
     One,
     /// The first that holds it.
@@ -74,7 +74,7 @@ pub enum ShadowSource {
         /// What compares.
         tap: ShadowTap,
         /// Which map.
-        views: ShadowViews,
+        choice: ShadowMapChoice,
         /// The bias.
         bias: ShadowBias,
         /// Margin at the border of a map, where another map is used, in texels.
@@ -89,7 +89,7 @@ pub enum ShadowSource {
 /// The depths of a map: entry points `depth_vertex`, or for surfaces with alpha masks `surface_vertex` and
 /// `depth_fragment`.
 pub fn shadow_depth_shader(surface: SurfaceVariant) -> String {
-    let mut text = [wgsl!("frame/frame"), wgsl!("shadow_maps/view"), wgsl!("shadow_maps/map_projection")].concat();
+    let mut text = [wgsl!("frame/frame"), wgsl!("shadow_maps/map"), wgsl!("shadow_maps/map_projection")].concat();
     if surface.has_alpha_mask {
         crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
         text.push_str(wgsl!("frame/depth_fragment"));
@@ -104,7 +104,7 @@ pub fn shadow_depth_shader(surface: SurfaceVariant) -> String {
 pub fn shadow_mask_shader(surface: SurfaceVariant, is_flat: bool) -> String {
     let place = if is_flat { wgsl!("shadow_maps/flat_projection") } else { wgsl!("shadow_maps/map_projection") };
     let mut text =
-        [wgsl!("frame/frame"), wgsl!("shadow_maps/view"), place, wgsl!("shadow_maps/ground_height")].concat();
+        [wgsl!("frame/frame"), wgsl!("shadow_maps/map"), place, wgsl!("shadow_maps/ground_height")].concat();
     if surface.has_alpha_mask {
         let height = ("height_m", "height_above_ground(vertex.position_m)");
         crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, Some(height)));
@@ -154,7 +154,7 @@ fn push_sun(text: &mut String, sun: &ShadowSource) {
             push_receiver(text, &bias, 0.0);
             text.push_str(wgsl!("shadow_maps/sun_ground_mask"));
         }
-        ShadowSource::Maps { filter, tap, views, bias, margin_texels } => {
+        ShadowSource::Maps { filter, tap, choice, bias, margin_texels } => {
             push_receiver(text, bias, *margin_texels);
             text.push_str(match tap {
                 ShadowTap::Manual => wgsl!("shadow_maps/tap_manual"),
@@ -168,10 +168,10 @@ fn push_sun(text: &mut String, sun: &ShadowSource) {
                 ShadowFilter::Four => wgsl!("shadow_maps/filter_4"),
                 ShadowFilter::Penumbra => wgsl!("shadow_maps/filter_pcss"),
             });
-            text.push_str(match views {
-                ShadowViews::One => wgsl!("shadow_maps/views_one"),
-                ShadowViews::First => wgsl!("shadow_maps/views_first"),
-                ShadowViews::Blended => wgsl!("shadow_maps/views_blended"),
+            text.push_str(match choice {
+                ShadowMapChoice::One => wgsl!("shadow_maps/maps_one"),
+                ShadowMapChoice::First => wgsl!("shadow_maps/maps_first"),
+                ShadowMapChoice::Blended => wgsl!("shadow_maps/maps_blended"),
             });
             let is_disc = *filter == ShadowFilter::Penumbra;
             text.push_str(if is_disc { wgsl!("shadow_maps/sun_disc") } else { wgsl!("shadow_maps/sun") });
@@ -189,12 +189,12 @@ fn push_receiver(text: &mut String, bias: &ShadowBias, margin_texels: f32) {
         ("MAP_MARGIN_TEXELS", margin_texels),
     ];
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "const MOST_SHADOW_VIEWS: u32 = {MOST_SHADOW_VIEWS}u;");
+    let _ = writeln!(text, "const MOST_SHADOW_MAPS: u32 = {MOST_SHADOW_MAPS}u;");
     let _ = writeln!(text, "const BIAS_HAS_PLANE: bool = {};", bias.has_plane);
     for (name, value) in numbers {
         let _ = writeln!(text, "const {name}: f32 = {value:?};");
     }
-    text.push_str(&[wgsl!("shadow_maps/view"), wgsl!("shadow_maps/maps"), wgsl!("shadow_maps/receiver")].concat());
+    text.push_str(&[wgsl!("shadow_maps/map"), wgsl!("shadow_maps/maps"), wgsl!("shadow_maps/receiver")].concat());
 }
 
 /// Tells whether a comparison sampler filters: entry points `probe_vertex`, which draws a depth of 1, and `probe`,

@@ -96,12 +96,12 @@ pub struct SkyUniform {
 }
 
 /// Most shadow maps of a view.
-pub const MOST_SHADOW_VIEWS: usize = 6;
+pub const MOST_SHADOW_MAPS: usize = 6;
 
-/// A shadow map's matrix. `ShadowView` in `shadow_maps/view.wgsl`.
+/// A shadow map's matrix. `ShadowMap` in `shadow_maps/map.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct ShadowViewUniform {
+pub struct ShadowMapUniform {
     /// Columns of the matrix from a point, relative to the origin, to the map's clip space. Depth is 0 nearest to the
     /// sun.
     pub clip_from_point: [[f32; 4]; 4],
@@ -120,7 +120,7 @@ pub struct ShadowViewUniform {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct ShadowMapsUniform {
     /// Their matrices.
-    pub views: [ShadowViewUniform; MOST_SHADOW_VIEWS],
+    pub maps: [ShadowMapUniform; MOST_SHADOW_MAPS],
     /// How many there are.
     pub count: u32,
     #[doc(hidden)]

@@ -47,16 +47,16 @@ fn shadow_sources() -> Vec<ShadowSource> {
     let mut all = vec![ShadowSource::Down, ShadowSource::Open, ShadowSource::Mask, ShadowSource::Flat];
     for filter in [ShadowFilter::One, ShadowFilter::Sixteen, ShadowFilter::Four, ShadowFilter::Penumbra] {
         for tap in [ShadowTap::Manual, ShadowTap::Nearest, ShadowTap::Filtered, ShadowTap::Gathered] {
-            for views in [ShadowViews::One, ShadowViews::First, ShadowViews::Blended] {
+            for choice in [ShadowMapChoice::One, ShadowMapChoice::First, ShadowMapChoice::Blended] {
                 let bias = ShadowBias {
                     constant_m: 0.01,
                     constant_texels: 0.5,
                     slope: 0.0,
                     normal: 1.0,
                     reach: 1.0,
-                    has_plane: views == ShadowViews::One,
+                    has_plane: choice == ShadowMapChoice::One,
                 };
-                all.push(ShadowSource::Maps { filter, tap, views, bias, margin_texels: 4.0 });
+                all.push(ShadowSource::Maps { filter, tap, choice, bias, margin_texels: 4.0 });
             }
         }
     }
@@ -181,9 +181,9 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
     assert_eq!(members(&lit, "Sky"), (offsets!(SkyUniform: coefficients), size_of::<SkyUniform>() as u32));
     let [_, _, mask, _] = shadow_sources()[..4] else { panic!("there are sources without maps") };
     let mapped = validated(&mapped_visibility_shader(SurfaceVariant::default(), &mask));
-    let rust = offsets!(ShadowViewUniform: clip_from_point, origin_m, z_per_metre, eye_from_origin_m, ground_height_m);
-    assert_eq!(members(&mapped, "ShadowView"), (rust, size_of::<ShadowViewUniform>() as u32));
-    let rust = offsets!(ShadowMapsUniform: views, count);
+    let rust = offsets!(ShadowMapUniform: clip_from_point, origin_m, z_per_metre, eye_from_origin_m, ground_height_m);
+    assert_eq!(members(&mapped, "ShadowMap"), (rust, size_of::<ShadowMapUniform>() as u32));
+    let rust = offsets!(ShadowMapsUniform: maps, count);
     assert_eq!(members(&mapped, "ShadowMaps"), (rust, size_of::<ShadowMapsUniform>() as u32));
     let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
     assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));

@@ -34,7 +34,7 @@ use glam::DVec3;
 use std::fmt;
 
 /// Most maps of a view: the faces of a cube.
-pub const MOST_MAPS: usize = sunbake_shaders::MOST_SHADOW_VIEWS;
+pub const MOST_MAPS: usize = sunbake_shaders::MOST_SHADOW_MAPS;
 
 /// A kind of shadow map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]

@@ -9,7 +9,7 @@
 //! shaders subtract the same vector.
 
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec3};
-use sunbake_shaders::ShadowViewUniform;
+use sunbake_shaders::ShadowMapUniform;
 
 /// A frame across the light, right-handed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,8 +156,8 @@ impl MapProjection {
     }
 
     /// The uniform that shaders read, for an eye in bake space.
-    pub fn uniform(&self, eye_m: Vec3) -> ShadowViewUniform {
-        ShadowViewUniform {
+    pub fn uniform(&self, eye_m: Vec3) -> ShadowMapUniform {
+        ShadowMapUniform {
             clip_from_point: self.clip_from_point.as_mat4().to_cols_array_2d(),
             origin_m: self.origin_m.as_vec3().into(),
             z_per_metre: self.rows()[2].truncate().dot(self.axes.towards) as f32,

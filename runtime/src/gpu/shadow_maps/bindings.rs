@@ -7,7 +7,7 @@ use crate::gpu::frame::write_in_order;
 use crate::shadow_maps::{MOST_MAPS, MapProjection, MapSettings, Variant};
 use bytemuck::Zeroable;
 use glam::Vec3;
-use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowViewUniform};
+use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowMapUniform};
 
 /// One map's matrix, for the pass that draws it.
 pub struct MapMatrix {
@@ -18,10 +18,10 @@ pub struct MapMatrix {
 /// Layouts and buffers that do not depend on how many maps there are.
 pub struct MapBindings {
     /// Layout of a map's matrix.
-    pub view_layout: wgpu::BindGroupLayout,
+    pub matrix_layout: wgpu::BindGroupLayout,
     /// Layout of what surfaces read.
     pub read_layout: wgpu::BindGroupLayout,
-    views: Vec<MapMatrix>,
+    matrices: Vec<MapMatrix>,
     maps: wgpu::Buffer,
     sampler: Option<wgpu::Sampler>,
     linear: Option<wgpu::Sampler>,
@@ -75,7 +75,7 @@ impl MapBindings {
     pub fn new(gpu: &Gpu, reads: &MapReads) -> Self {
         let uniform = wgpu::BufferBindingType::Uniform;
         let buffer = wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None };
-        let view_layout = layout(gpu, "shadow view", wgpu::ShaderStages::VERTEX, &[(0, buffer)]);
+        let matrix_layout = layout(gpu, "shadow map matrix", wgpu::ShaderStages::VERTEX, &[(0, buffer)]);
         let depths = wgpu::BindingType::Texture {
             sample_type: wgpu::TextureSampleType::Depth,
             view_dimension: wgpu::TextureViewDimension::D2Array,
@@ -111,9 +111,9 @@ impl MapBindings {
             })
         };
         Self {
-            view_layout,
+            matrix_layout,
             read_layout: layout(gpu, "shadow maps", wgpu::ShaderStages::FRAGMENT, &entries),
-            views: Vec::new(),
+            matrices: Vec::new(),
             maps: uniform_buffer(gpu, size_of::<ShadowMapsUniform>()),
             sampler: match reads.tap {
                 _ if !reads.has_depths => None,
@@ -149,8 +149,8 @@ impl MapBindings {
     }
 
     /// Number of matrices with a group each.
-    pub fn view_count(&self) -> usize {
-        self.views.len()
+    pub fn matrix_count(&self) -> usize {
+        self.matrices.len()
     }
 
     /// Writes the maps' matrices, in the encoder's order.
@@ -163,27 +163,27 @@ impl MapBindings {
         ground_height_m: f32,
     ) {
         let mut all = ShadowMapsUniform { count: maps.len() as u32, ..Zeroable::zeroed() };
-        for (view, map) in all.views.iter_mut().zip(maps.iter().take(MOST_MAPS)) {
-            *view = ShadowViewUniform { ground_height_m, ..map.uniform(eye_m) };
+        for (uniform, map) in all.maps.iter_mut().zip(maps.iter().take(MOST_MAPS)) {
+            *uniform = ShadowMapUniform { ground_height_m, ..map.uniform(eye_m) };
         }
         write_in_order(gpu, encoder, &self.maps, bytemuck::bytes_of(&all));
         // A flat mask has no map, but needs the ground's height.
-        let only_ground = ShadowViewUniform { ground_height_m, ..Zeroable::zeroed() };
-        let views = if maps.is_empty() { &[only_ground][..] } else { &all.views[..maps.len().min(MOST_MAPS)] };
-        while self.views.len() < views.len() {
-            let buffer = uniform_buffer(gpu, size_of::<ShadowViewUniform>());
+        let only_ground = ShadowMapUniform { ground_height_m, ..Zeroable::zeroed() };
+        let uniforms = if maps.is_empty() { &[only_ground][..] } else { &all.maps[..maps.len().min(MOST_MAPS)] };
+        while self.matrices.len() < uniforms.len() {
+            let buffer = uniform_buffer(gpu, size_of::<ShadowMapUniform>());
             let entries = vec![(0, buffer.as_entire_binding())];
-            let group = bind_group(gpu, "shadow view", &self.view_layout, entries);
-            self.views.push(MapMatrix { buffer, group });
+            let group = bind_group(gpu, "shadow map matrix", &self.matrix_layout, entries);
+            self.matrices.push(MapMatrix { buffer, group });
         }
-        for (view, uniform) in self.views.iter().zip(views) {
-            write_in_order(gpu, encoder, &view.buffer, bytemuck::bytes_of(uniform));
+        for (matrix, uniform) in self.matrices.iter().zip(uniforms) {
+            write_in_order(gpu, encoder, &matrix.buffer, bytemuck::bytes_of(uniform));
         }
     }
 
     /// The group of a map's matrix, once it has been written.
-    pub fn view(&self, index: usize) -> &wgpu::BindGroup {
-        &self.views[index].group
+    pub fn matrix_group(&self, index: usize) -> &wgpu::BindGroup {
+        &self.matrices[index].group
     }
 }
 

@@ -227,14 +227,14 @@ impl<'g> MapRenderer<'g> {
     pub fn census(&self) -> Census {
         let scene = self.scene.census();
         let read_bindings = self.read_group.as_ref().map(|(_, count)| *count);
-        let views = self.bindings.view_count();
+        let matrices = self.bindings.matrix_count();
         let masks = || self.mask.iter().flatten().chain(&self.flat);
         let mask_bytes: u64 = masks().map(CasterMask::bytes).sum();
         let census = Census {
             passes: self.report.passes,
             targets: self.targets.count(),
-            bind_groups: scene.bind_groups + usize::from(read_bindings.is_some()) + views,
-            bindings: scene.bindings + read_bindings.unwrap_or(0) + views,
+            bind_groups: scene.bind_groups + usize::from(read_bindings.is_some()) + matrices,
+            bindings: scene.bindings + read_bindings.unwrap_or(0) + matrices,
             shadow_pipelines: self.programs.keys().filter(|key| key.is_shadow()).count(),
             shadow_maps: self.maps.as_ref().map_or(0, |maps| maps.layers.len()),
             shadow_masks: masks().count(),

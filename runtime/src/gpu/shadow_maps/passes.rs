@@ -56,7 +56,7 @@ impl MapRenderer<'_> {
         };
         let mut pass = begin_depth_pass(encoder, "shadow map", depth, &self.clock, Phase::Maps);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        pass.set_bind_group(1, self.bindings.view(index), &[]);
+        pass.set_bind_group(1, self.bindings.matrix_group(index), &[]);
         for batch in self.casters() {
             self.scene.draw_depth(&mut pass, batch, self.shadow_program(MapProgram::Map(caster_key(&batch.key))));
         }
@@ -68,7 +68,7 @@ impl MapRenderer<'_> {
         let Some(mask) = mask.filter(|mask| mask.size == size) else { return };
         let mut pass = begin_color_pass(encoder, "mask", cleared(mask), None, &self.clock, Phase::Maps);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
-        pass.set_bind_group(1, self.bindings.view(0), &[]);
+        pass.set_bind_group(1, self.bindings.matrix_group(0), &[]);
         for batch in self.casters_on_ground() {
             self.scene.draw_depth(&mut pass, batch, self.shadow_program(MapProgram::Mask(caster_key(&batch.key))));
         }

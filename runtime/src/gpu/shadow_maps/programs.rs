@@ -8,7 +8,7 @@ use crate::gpu::frame::{
     sky_program, surface_stages, surface_state,
 };
 use crate::shadow_maps::Variant;
-use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowViews, SurfaceVariant};
+use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowMapChoice, SurfaceVariant};
 
 /// A pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -144,7 +144,7 @@ impl MapRenderer<'_> {
 
     fn caster_groups(&self, key: &BatchKey) -> [Option<&wgpu::BindGroupLayout>; 3] {
         let [frame, _, texture] = self.scene.groups(key);
-        [frame, Some(&self.bindings.view_layout), texture.filter(|_| key.surface.has_alpha_mask)]
+        [frame, Some(&self.bindings.matrix_layout), texture.filter(|_| key.surface.has_alpha_mask)]
     }
 
     /// What a surface's shader reads of the sun.
@@ -157,10 +157,10 @@ impl MapRenderer<'_> {
             _ => ShadowFilter::One,
         };
         let tap = self.reads.tap;
-        let views = match settings.variant {
-            Variant::Cascades => ShadowViews::Blended,
-            Variant::Cube => ShadowViews::First,
-            _ => ShadowViews::One,
+        let choice = match settings.variant {
+            Variant::Cascades => ShadowMapChoice::Blended,
+            Variant::Cube => ShadowMapChoice::First,
+            _ => ShadowMapChoice::One,
         };
         match sun {
             SunReads::Down => ShadowSource::Down,
@@ -169,7 +169,7 @@ impl MapRenderer<'_> {
             SunReads::Flat => ShadowSource::Flat,
             SunReads::Maps => {
                 let margin_texels = settings.margin_texels() as f32 - 0.5;
-                ShadowSource::Maps { filter, tap, views, bias: self.bias(filter, tap), margin_texels }
+                ShadowSource::Maps { filter, tap, choice, bias: self.bias(filter, tap), margin_texels }
             }
         }
     }

@@ -41,7 +41,7 @@ fn blocker_distance_m(at: Receiver, slope: f32, metres_per_depth: f32, turn_rad:
 fn shadow_filter(at: Receiver, pixel: vec2<f32>) -> f32 {
     let turn_rad = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2<f32>(0.06711056, 0.00583715))));
     let slope = tan(0.5 / frame.inverse_angular_diameter);
-    let metres_per_depth = -1.0 / shadow_maps.views[at.map].z_per_metre;
+    let metres_per_depth = -1.0 / shadow_maps.maps[at.map].z_per_metre;
     let distance_m = blocker_distance_m(at, slope, metres_per_depth, turn_rad);
     if distance_m < 0.0 {
         return 1.0;

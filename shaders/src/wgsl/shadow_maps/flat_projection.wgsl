@@ -1,6 +1,6 @@
 // Projects a vertex along the sun's rays onto the ground, and from there to the camera. Coordinates are homogeneous:
 // under a sun at the horizon the point lies at infinity.
-@group(1) @binding(0) var<uniform> shadow_view: ShadowView;
+@group(1) @binding(0) var<uniform> shadow_map: ShadowMap;
 
 // A sun lower than this counts as this high: a fifth of an arc second.
 const LEAST_SLANT: f32 = 1e-6;

@@ -1,6 +1,6 @@
 // A view's shadow maps.
 struct ShadowMaps {
-    views: array<ShadowView, MOST_SHADOW_VIEWS>,
+    maps: array<ShadowMap, MOST_SHADOW_MAPS>,
     count: u32,
 }
 

@@ -1,5 +1,5 @@
 // A shadow map's matrix, about an origin of its own: see runtime/src/shadow_maps/projection.rs.
-struct ShadowView {
+struct ShadowMap {
     clip_from_point: mat4x4<f32>,
     origin_m: vec3<f32>,
     z_per_metre: f32,
