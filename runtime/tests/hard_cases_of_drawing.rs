@@ -187,7 +187,7 @@ fn a_leaf_casts_and_shows_its_cut_out_and_not_its_card() {
     }
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
     volumes.visibility(&shot, &stage.moment(0.5)).unwrap();
-    assert!(volumes.plan().iter().any(|line| line.contains("the whole triangles cast")));
+    assert!(volumes.notes().iter().any(|line| line.contains("the whole triangles cast")));
     // From above: the card hides the ground only where it is solid.
     let shot = Shot::new(&stage, view(&stage, DVec3::new(0.0, 3.0, 0.0), DVec3::new(0.0, 1.0, 0.0), SIZE));
     let on_card = |hit: &sunbake::trace::Hit| stage.geometry.instance[hit.triangle as usize] == 1;

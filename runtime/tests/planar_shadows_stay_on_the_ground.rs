@@ -118,7 +118,7 @@ fn without_a_level_plane_there_is_no_ground_and_nothing_is_shaded_or_built() {
     let mut maps = ShadowMaps::new(&gpu, &stage, MapSettings::new(Variant::Planar)).unwrap();
     let seen = maps.visibility(&shot, &stage.moment(0.5)).unwrap();
     let census = maps.census().unwrap();
-    assert!(seen.pixels.contains(&1.0) && maps.plan().iter().any(|line| line.contains("there is no ground")));
+    assert!(seen.pixels.contains(&1.0) && maps.notes().iter().any(|line| line.contains("there is no ground")));
     assert_eq!((census.shadow_masks, census.shadow_pipelines, census.passes), (0, 0, 2));
 }
 

@@ -32,8 +32,8 @@ pub enum VolumeUse {
     Count,
     /// They are summed: entry point `volume_fill_fragment`.
     Fill,
-    /// They are summed per side, to be shown: entry point `volume_show_fragment`.
-    Show,
+    /// They are summed per side, for a picture of the volumes: entry point `volume_visualize_fragment`.
+    Visualize,
 }
 
 impl VolumeUse {
@@ -43,7 +43,7 @@ impl VolumeUse {
             Self::Stencil => None,
             Self::Count => Some("volume_count_fragment"),
             Self::Fill => Some("volume_fill_fragment"),
-            Self::Show => Some("volume_show_fragment"),
+            Self::Visualize => Some("volume_visualize_fragment"),
         }
     }
 }
@@ -69,7 +69,7 @@ pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) 
         VolumeUse::Stencil => "",
         VolumeUse::Count => wgsl!("volumes/count_fragment"),
         VolumeUse::Fill => wgsl!("volumes/fill_fragment"),
-        VolumeUse::Show => wgsl!("volumes/show_fragment"),
+        VolumeUse::Visualize => wgsl!("volumes/visualize_fragment"),
     });
     text
 }

@@ -70,7 +70,7 @@ fn every_composed_shader_is_valid() {
     validated(&screen_shader());
     for light in [VolumeLight::Sun, VolumeLight::Lamp, VolumeLight::LampWithRange] {
         for corners in [VolumeCorners::Indexed, VolumeCorners::FromEdges] {
-            for of in [VolumeUse::Stencil, VolumeUse::Count, VolumeUse::Fill, VolumeUse::Show] {
+            for of in [VolumeUse::Stencil, VolumeUse::Count, VolumeUse::Fill, VolumeUse::Visualize] {
                 validated(&volume_shader(light, corners, of));
             }
         }

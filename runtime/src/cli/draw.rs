@@ -263,7 +263,7 @@ pub fn kind_of(moment: &Moment, output: OutputChoice) -> Output {
 /// Prints which effects a picture calls for, and what its technique decided.
 pub fn explain(technique: &dyn Technique, effects: &DrawPlan) {
     eprint!("{}", effects.in_words());
-    technique.plan().iter().for_each(|line| eprintln!("{line}"));
+    technique.notes().iter().for_each(|line| eprintln!("{line}"));
 }
 
 /// What a frame is made of.
@@ -283,7 +283,7 @@ pub fn draw(
 ) -> Result<Picture, Failure> {
     Ok(match output {
         OutputChoice::Color => Picture::Color(technique.color(shot, moment)?),
-        OutputChoice::Volumes => match technique.shown(shot, moment)? {
+        OutputChoice::Volumes => match technique.debug_picture(shot, moment)? {
             Some(picture) => Picture::Color(picture),
             None => return Err(Failure::usage("this technique has nothing to show: draw --technique volumes")),
         },

@@ -27,7 +27,7 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     let seconds = start.elapsed().as_secs_f64();
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let clock = clock_label(stage.path.as_ref(), t);
-    let effects = technique.effects(&shot, kind_of(&moment, args.output));
+    let effects = technique.draw_plan(&shot, kind_of(&moment, args.output));
     if args.printing.explain {
         explain(technique.as_ref(), &effects);
     }
@@ -35,7 +35,7 @@ pub fn run(args: &FrameArgs) -> Result<(), Failure> {
         let report = json!({
             "file": args.output_file, "t": t, "clock": clock, "size": args.look.size, "seconds": seconds,
             "technique": technique.name(), "renderer": renderer, "bytes": technique.bytes(),
-            "gpu": technique.census(), "effects": effects.entries(), "plan": technique.plan(),
+            "gpu": technique.census(), "effects": effects.entries(), "plan": technique.notes(),
             "details": technique.details(),
         });
         print_json(&report)?;

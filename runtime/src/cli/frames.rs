@@ -53,7 +53,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     drop(progress);
     let renderer = gpu.as_ref().map_or("the CPU", |gpu| &gpu.name);
     let last = moment(&stage, &args.look, (f64::from(args.count) - 0.5) / f64::from(args.count))?;
-    let effects = technique.effects(&shot, kind_of(&last, args.output));
+    let effects = technique.draw_plan(&shot, kind_of(&last, args.output));
     if args.printing.explain {
         explain(technique.as_ref(), &effects);
     }
@@ -62,7 +62,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
             "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
             "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
             "bytes": technique.bytes(), "gpu": technique.census(), "effects": effects.entries(),
-            "plan": technique.plan(), "details": technique.details(),
+            "plan": technique.notes(), "details": technique.details(),
         });
         print_json(&report)?;
     } else if !args.printing.quiet {

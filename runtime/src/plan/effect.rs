@@ -54,7 +54,7 @@ pub enum DrawEffect {
     /// Volumes counted in several runs.
     SeveralRuns,
     /// A picture of the volumes.
-    ShownVolumes,
+    VisualizedVolumes,
     /// Shadow maps of the sun.
     SunShadows,
     /// More than one shadow map.
@@ -70,7 +70,7 @@ pub enum DrawEffect {
     /// A filter as wide as the penumbra.
     MapPenumbra,
     /// The ground as draws of its own.
-    GroundApart,
+    SeparateGroundDraws,
     /// Rays over the light's disc.
     TruthOfDisc,
     /// A lamp that rays are traced to.

@@ -73,7 +73,7 @@ impl Technique for BakedCpu<'_> {
         self.stage.gpu_bytes()
     }
 
-    fn effects(&self, _shot: &Shot, _output: Output) -> DrawPlan {
+    fn draw_plan(&self, _shot: &Shot, _output: Output) -> DrawPlan {
         on_cpu::baked(self.stage)
     }
 }

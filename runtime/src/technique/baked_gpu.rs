@@ -56,7 +56,7 @@ impl Technique for BakedGpu<'_> {
         FrameCost { cpu_seconds: 0.0, passes: self.renderer.times() }
     }
 
-    fn effects(&self, _shot: &Shot, output: Output) -> DrawPlan {
+    fn draw_plan(&self, _shot: &Shot, output: Output) -> DrawPlan {
         self.renderer.plan(output)
     }
 

@@ -62,12 +62,12 @@ pub trait Technique {
 
     /// The picture with the geometry of its shadows made visible (shadow volumes). None for techniques without such
     /// geometry.
-    fn shown(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
+    fn debug_picture(&mut self, _shot: &Shot, _moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
         Ok(None)
     }
 
     /// What was decided for the last frame and why, as sentences. Empty where there is nothing to decide.
-    fn plan(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
@@ -78,7 +78,7 @@ pub trait Technique {
 
     /// Which effects a shot's pictures of one kind need. Where that depends on the view and the light, it is an upper
     /// bound before the first such picture, and afterwards what the last one needed.
-    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan;
+    fn draw_plan(&self, shot: &Shot, output: Output) -> DrawPlan;
 
     /// What was built on the GPU. None where the CPU draws.
     fn census(&self) -> Option<Census> {

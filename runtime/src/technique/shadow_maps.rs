@@ -70,7 +70,7 @@ impl Technique for ShadowMaps<'_> {
         FrameCost { cpu_seconds: report.fit_seconds, passes: report.times }
     }
 
-    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan {
+    fn draw_plan(&self, shot: &Shot, output: Output) -> DrawPlan {
         self.renderer.plan_of(shot.stage, output, shot.view.pixel_count() as u64)
     }
 
@@ -89,7 +89,7 @@ impl Technique for ShadowMaps<'_> {
         })
     }
 
-    fn plan(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<String> {
         let (settings, report) = (&self.settings, self.renderer.report());
         let mut lines = Vec::new();
         let lacks_ground = settings.variant == Variant::Planar && self.renderer.ground_height_m().is_none();

@@ -126,7 +126,7 @@ impl Technique for Truth {
         }
     }
 
-    fn effects(&self, shot: &Shot, _output: Output) -> DrawPlan {
+    fn draw_plan(&self, shot: &Shot, _output: Output) -> DrawPlan {
         let rays = match self {
             Self::Hard => None,
             Self::Soft { rays } => Some(*rays),

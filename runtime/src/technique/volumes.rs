@@ -60,8 +60,8 @@ impl Technique for Volumes<'_> {
         Ok(Raster { size: shot.view.size, pixels: self.renderer.lit(&shot.view, moment)? })
     }
 
-    fn shown(&mut self, shot: &Shot, moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
-        Ok(Some(Raster { size: shot.view.size, pixels: self.renderer.shown(&shot.view, moment)? }))
+    fn debug_picture(&mut self, shot: &Shot, moment: &Moment) -> Result<Option<Raster<Vec3>>, GpuError> {
+        Ok(Some(Raster { size: shot.view.size, pixels: self.renderer.debug_picture(&shot.view, moment)? }))
     }
 
     fn bytes(&self) -> u64 {
@@ -75,7 +75,7 @@ impl Technique for Volumes<'_> {
         FrameCost { cpu_seconds, passes: report.times }
     }
 
-    fn effects(&self, shot: &Shot, output: Output) -> DrawPlan {
+    fn draw_plan(&self, shot: &Shot, output: Output) -> DrawPlan {
         self.renderer.plan_of(shot.stage, output)
     }
 
@@ -87,7 +87,7 @@ impl Technique for Volumes<'_> {
         serde_json::json!({ "casters": self.renderer.caster_counts(), "frame": self.renderer.report() })
     }
 
-    fn plan(&self) -> Vec<String> {
+    fn notes(&self) -> Vec<String> {
         let casters = self.renderer.caster_counts();
         let mut lines = vec![
             format!(

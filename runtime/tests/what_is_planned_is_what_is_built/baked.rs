@@ -21,7 +21,7 @@ fn baked(gpu: &Gpu, stage: &Stage, output: Output) -> (Census, DrawPlan) {
     draw(&mut technique, &shot, output);
     let found = technique.census().unwrap();
     assert_eq!(plan.totals, found, "{output:?}");
-    assert_eq!(technique.effects(&shot, output), plan);
+    assert_eq!(technique.draw_plan(&shot, output), plan);
     (found, plan)
 }
 

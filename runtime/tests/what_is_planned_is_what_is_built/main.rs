@@ -88,7 +88,7 @@ fn every_effect_states_why_its_cost_and_what_toggles_it() {
             if drawn {
                 draw(technique.as_mut(), &shot, Output::Lit);
             }
-            let plan = technique.effects(&shot, Output::Lit);
+            let plan = technique.draw_plan(&shot, Output::Lit);
             assert!(plan.is_on("lamp") && plan.needs.len() > 2, "{}", technique.name());
             for need in &plan.needs {
                 let is_said = |text: &str| text.len() > 2;

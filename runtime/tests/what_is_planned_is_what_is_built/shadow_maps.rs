@@ -19,15 +19,15 @@ fn under_maps(gpu: &Gpu, stage: &Stage, variant: Variant, output: Output) -> (Ce
     let most = maps_plan(stage, &settings, output, u64::from(EDGE * EDGE));
     let shot = shot(stage, ASIDE);
     let mut technique = ShadowMaps::new(gpu, stage, settings).unwrap();
-    let before = technique.effects(&shot, output);
+    let before = technique.draw_plan(&shot, output);
     draw(&mut technique, &shot, output);
-    let (found, plan) = (technique.census().unwrap(), technique.effects(&shot, output));
+    let (found, plan) = (technique.census().unwrap(), technique.draw_plan(&shot, output));
     assert_eq!(before.totals, most.totals, "{variant} {output:?}");
     assert!(found.is_within(&most.totals), "{variant} {output:?}: {:?}", found.beyond(&most.totals));
     assert_eq!((plan.totals, plan.is_exact, most.is_exact), (found, true, false), "{variant} {output:?}");
     // Maps kept from the last picture need no pass.
     draw(&mut technique, &shot, output);
-    let again = technique.effects(&shot, output).totals;
+    let again = technique.draw_plan(&shot, output).totals;
     assert_eq!(again, technique.census().unwrap(), "{variant} {output:?}");
     (found, plan)
 }

@@ -15,9 +15,9 @@ fn under_volumes(gpu: &Gpu, stage: &Stage, settings: VolumeSettings, eye: DVec3,
     let most = volumes_plan(stage, &settings, output);
     let shot = shot(stage, eye);
     let mut technique = Volumes::new(gpu, stage, settings).unwrap();
-    let before = technique.effects(&shot, output);
+    let before = technique.draw_plan(&shot, output);
     draw(&mut technique, &shot, output);
-    let (found, plan) = (technique.census().unwrap(), technique.effects(&shot, output));
+    let (found, plan) = (technique.census().unwrap(), technique.draw_plan(&shot, output));
     let name = format!("{} {output:?}", technique.name());
     assert!(found.is_within(&most.totals), "{name}: {:?}", found.beyond(&most.totals));
     assert!(found.is_within(&before.totals) && before.totals.is_within(&most.totals), "{name}");
@@ -112,8 +112,8 @@ fn volumes_that_are_shown_are_planned_too() {
     let stage = Stage::plain(on_ground(with_lid), sun(0.0));
     let shot = shot(&stage, ASIDE);
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
-    volumes.shown(&shot, &stage.moment(0.5)).unwrap();
-    let plan = volumes.effects(&shot, Output::Lit);
+    volumes.debug_picture(&shot, &stage.moment(0.5)).unwrap();
+    let plan = volumes.draw_plan(&shot, Output::Lit);
     assert_eq!(plan.totals, volumes.census().unwrap());
     assert_eq!(plan.need("shown-volumes").map(|need| need.takes.pipelines), Some(1));
 }

@@ -98,7 +98,7 @@ fn draw_frames(
             stop_if_asked(on_frame)?;
         }
     }
-    let (memory_bytes, plan) = (technique.bytes(), technique.plan());
+    let (memory_bytes, plan) = (technique.bytes(), technique.notes());
     Ok(DrawnFrames { visibility, times: all_times, setup_s, memory_bytes, plan })
 }
 

@@ -11,7 +11,7 @@ use sunbake_shaders::ShadowTap;
 pub fn ground_apart(effects: &SceneEffects) -> DrawNeed {
     let is_on = effects.scene.surfaces().any(|key| key.is_ground);
     let join = |scene: &mut SceneNeeds| change_keys(scene, |key| BatchKey { is_ground: false, ..*key });
-    DrawNeed::new(DrawEffect::GroundApart, is_on.then(|| effects.saved_by(join)), Reason::Usual)
+    DrawNeed::new(DrawEffect::SeparateGroundDraws, is_on.then(|| effects.saved_by(join)), Reason::Usual)
 }
 
 /// Decides about each effect of shadow maps.

@@ -27,7 +27,7 @@ impl VolumeDecisions<'_> {
             self.open_meshes(),
             self.silhouettes_by_gpu(),
             self.runs(),
-            self.shown(),
+            self.visualized(),
         ]
     }
 
@@ -96,11 +96,11 @@ impl VolumeDecisions<'_> {
         })
     }
 
-    fn shown(&self) -> DrawNeed {
-        let is_on = self.any(|light| light.faces.iter().any(|key| key.of == VolumeUse::Show));
+    fn visualized(&self) -> DrawNeed {
+        let is_on = self.any(|light| light.faces.iter().any(|key| key.of == VolumeUse::Visualize));
         let hide = |needs: &mut VolumeNeeds| {
             needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| key.of == VolumeUse::Stencil));
         };
-        DrawNeed::new(DrawEffect::ShownVolumes, is_on.then(|| self.saved_by(hide)), Reason::Usual)
+        DrawNeed::new(DrawEffect::VisualizedVolumes, is_on.then(|| self.saved_by(hide)), Reason::Usual)
     }
 }

@@ -27,7 +27,7 @@ mod plan;
 mod programs;
 mod record;
 mod report;
-mod show;
+mod debug;
 
 pub use report::{FrameReport, LightReport, volumes_plan};
 

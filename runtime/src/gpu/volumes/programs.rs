@@ -174,7 +174,7 @@ impl VolumeRenderer<'_> {
         };
         let source = ShaderStages { text: &text, vertex, fragment: key.of.fragment(), attributes: &[] };
         let compare = match key.of {
-            VolumeUse::Stencil | VolumeUse::Show => wgpu::CompareFunction::Greater,
+            VolumeUse::Stencil | VolumeUse::Visualize => wgpu::CompareFunction::Greater,
             // Faces behind the surface: those that fail the test of the stencil's pass.
             VolumeUse::Count => wgpu::CompareFunction::LessEqual,
             VolumeUse::Fill => wgpu::CompareFunction::Always,

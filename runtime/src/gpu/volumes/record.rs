@@ -133,7 +133,7 @@ impl VolumeRenderer<'_> {
     ) -> Result<(), GpuError> {
         let find_seconds = self.extrude(&light.light)?;
         let started = Instant::now();
-        let (plan, draws) = self.plan(view, &light.light);
+        let (plan, draws) = self.frame_plan(view, &light.light);
         let plan_seconds = started.elapsed().as_secs_f64();
         self.report_light(&light.light, &plan, &draws, find_seconds, plan_seconds);
         let light_index = light_index(&light.light);
@@ -161,7 +161,7 @@ impl VolumeRenderer<'_> {
     }
 
     /// What to draw of a light's volumes.
-    pub(super) fn plan(&self, view: &View, light: &Light) -> (FramePlan, VolumeDraws) {
+    pub(super) fn frame_plan(&self, view: &View, light: &Light) -> (FramePlan, VolumeDraws) {
         let VolumeSettings { mode, savings, .. } = self.settings;
         let extruded = self.extruded[light_index(light)].as_ref().expect("a light is planned once it has extruded");
         let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.facings, light, view, mode, savings);

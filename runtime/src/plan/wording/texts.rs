@@ -272,7 +272,7 @@ pub const TEXTS: [EffectText; 37] = [
         ..NONE
     },
     EffectText {
-        effect: DrawEffect::ShownVolumes,
+        effect: DrawEffect::VisualizedVolumes,
         name: "shown-volumes",
         why_on: "--output volumes shows them",
         why_off: "volumes are counted, and not shown",
@@ -350,7 +350,7 @@ pub const TEXTS: [EffectText; 37] = [
         on_by: "--technique map:pcss",
     },
     EffectText {
-        effect: DrawEffect::GroundApart,
+        effect: DrawEffect::SeparateGroundDraws,
         name: "ground-apart",
         why_on: "the lowest large level plane is drawn apart",
         why_off: "no surface is level",

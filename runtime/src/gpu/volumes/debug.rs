@@ -14,27 +14,27 @@ const WARM: Vec3 = Vec3::new(1.0, 0.36, 0.04);
 /// Colour of volumes that one looks through.
 const COLD: Vec3 = Vec3::new(0.04, 0.22, 0.85);
 /// Weight of a face one looks through, against a volume that holds the surface.
-const SHOWN_THROUGH: f32 = 0.08;
+const SEE_THROUGH_WEIGHT: f32 = 0.08;
 /// Brightness of the picture beneath the volumes.
-const SHOWN_PICTURE: f32 = 0.8;
+const PICTURE_BRIGHTNESS: f32 = 0.8;
 /// How much of the picture is covered where many faces are: 1 - exp(-this).
-const SHOWN_FACES: f32 = 1.1;
+const FACE_COVERAGE: f32 = 1.1;
 
 impl VolumeRenderer<'_> {
     /// The lit picture with the sun's volumes shown, or the lamp's where it alone shines. Warm: more faces turn to
     /// the eye than away, so that the surface lies in a volume. Cold: one looks through volumes and out of them. Each
     /// further face counts less.
-    pub fn shown(&mut self, view: &View, moment: &Moment) -> Result<Vec<Vec3>, GpuError> {
+    pub fn debug_picture(&mut self, view: &View, moment: &Moment) -> Result<Vec<Vec3>, GpuError> {
         let lit = self.lit(view, moment)?;
-        let faces = readback::colors(&self.over_faces(view, moment, Output::Lit, VolumeUse::Show)?);
+        let faces = readback::colors(&self.over_faces(view, moment, Output::Lit, VolumeUse::Visualize)?);
         let mut totals: Vec<f32> = faces.iter().map(|faces| faces.x + faces.z).filter(|&n| n > 0.0).collect();
         totals.sort_by(f32::total_cmp);
         let many = totals.get(totals.len() * 3 / 4).copied().unwrap_or(1.0);
         let mix = |(lit, faces): (&Vec3, &Vec3)| {
             let total = faces.x + faces.z;
             let entered = (faces.x - faces.z).max(0.0);
-            let tint = COLD.lerp(WARM, entered / (entered + SHOWN_THROUGH * total).max(1.0));
-            (*lit * SHOWN_PICTURE).lerp(tint, 1.0 - (-SHOWN_FACES * total / many).exp())
+            let tint = COLD.lerp(WARM, entered / (entered + SEE_THROUGH_WEIGHT * total).max(1.0));
+            (*lit * PICTURE_BRIGHTNESS).lerp(tint, 1.0 - (-FACE_COVERAGE * total / many).exp())
         };
         Ok(lit.iter().zip(&faces).map(mix).collect())
     }
@@ -84,7 +84,7 @@ impl VolumeRenderer<'_> {
             let mut encoder = gpu.encoder();
             self.scene.frame.write(gpu, &mut encoder, view, &light.moment);
             let light_index = light_index(&light.light);
-            let (plan, draws) = self.plan(view, &light.light);
+            let (plan, draws) = self.frame_plan(view, &light.light);
             self.prepare_faces(light_index, &draws, of, picture.target().format);
             self.face_pass(&mut encoder, picture.target(), &depth, light_index, &plan, &draws, of);
             readback::read(gpu, &picture, output.channels(), encoder)
