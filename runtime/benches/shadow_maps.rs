@@ -19,7 +19,7 @@ use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
 use sunbake_runtime::compare::Defects;
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
+use sunbake_runtime::shadow_maps::{Bias, MapSettings, MapOptimizations, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{ReferenceDay, defects_of};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask};
@@ -113,9 +113,9 @@ impl<'a> Frames<'a> {
     /// Draws every frame several times, maps anew each time, with and without comparisons in turn; the least of each
     /// frame's times counts.
     fn times(&self, gpu: &Gpu, settings: MapSettings) -> Times {
-        let means = |sampling| Means { cache: false, sampling, ..Means::default() };
+        let optimizations = |sampling| MapOptimizations { cache: false, sampling, ..MapOptimizations::default() };
         let open = |sampling| {
-            let settings = MapSettings { is_timed: true, means: means(sampling), ..settings };
+            let settings = MapSettings { is_timed: true, optimizations: optimizations(sampling), ..settings };
             ShadowMaps::new(gpu, self.stage, settings).unwrap_or_else(|error| panic!("{error}"))
         };
         let mut rivals = [open(true), open(false)];

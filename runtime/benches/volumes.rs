@@ -20,7 +20,7 @@ use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask, with_solid_leaves};
-use sunbake_runtime::volumes::{Mode, Savings};
+use sunbake_runtime::volumes::{Mode, VolumeOptimizations};
 use sunbake_runtime::{Moment, Raster, Shot, Stage, View};
 
 const SHARED: [&str; 4] = [
@@ -60,7 +60,7 @@ fn main() {
             ways(&gpu, &name, &frames, number("rounds", 3));
         }
         if wants("savings") {
-            savings(&gpu, &name, &frames, number("rounds", 3));
+            optimizations(&gpu, &name, &frames, number("rounds", 3));
         }
         if wants("suns") {
             suns(&gpu, &name, &frames);
@@ -221,10 +221,10 @@ fn ways(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
     }
 }
 
-/// A set of savings, and the one that it lacks.
-type Lacking = (&'static str, fn(&mut Savings));
+/// An optimization that is turned off, by name.
+type Lacking = (&'static str, fn(&mut VolumeOptimizations));
 
-fn savings(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
+fn optimizations(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
     let lacking: [Lacking; 6] = [
         ("leaving out what misses the view", |s| s.view_culling = false),
         ("leaving out what shades nothing in view", |s| s.receiver_culling = false),
@@ -233,23 +233,23 @@ fn savings(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
         ("scissor", |s| s.scissor = false),
         ("solids' front faces alone", |s| s.solids = false),
     ];
-    let without = |edit: fn(&mut Savings)| {
-        let mut savings = Savings::default();
-        edit(&mut savings);
-        VolumeSettings { savings, ..VolumeSettings::default() }
+    let without = |edit: fn(&mut VolumeOptimizations)| {
+        let mut optimizations = VolumeOptimizations::default();
+        edit(&mut optimizations);
+        VolumeSettings { optimizations, ..VolumeSettings::default() }
     };
     let mut rivals =
-        vec![VolumeSettings::default(), VolumeSettings { savings: Savings::NONE, ..VolumeSettings::default() }];
-    rivals.push(VolumeSettings { mode: Mode::Triangles, savings: Savings::NONE, ..VolumeSettings::default() });
+        vec![VolumeSettings::default(), VolumeSettings { optimizations: VolumeOptimizations::NONE, ..VolumeSettings::default() }];
+    rivals.push(VolumeSettings { mode: Mode::Triangles, optimizations: VolumeOptimizations::NONE, ..VolumeSettings::default() });
     rivals.extend(lacking.iter().map(|(_, edit)| without(*edit)));
     let costs = measure(gpu, frames, &rivals, rounds);
-    println!("\n{name}: savings, each as what its absence costs");
+    println!("\n{name}: optimizations, each as what its absence costs");
     println!("| without | volumes | against all | triangles | filled Mpx | frame against all |");
     println!("|---|---|---|---|---|---|");
     let names =
         ["nothing", "any of them", "any, a volume a triangle"].into_iter().chain(lacking.iter().map(|(what, _)| *what));
     // Where nothing is kept, a still frame finds its volumes again.
-    let frame = |rival: &VolumeSettings, cost: &Cost| if rival.savings.cache { cost.still() } else { cost.moving() };
+    let frame = |rival: &VolumeSettings, cost: &Cost| if rival.optimizations.cache { cost.still() } else { cost.moving() };
     for (what, (rival, cost)) in names.zip(rivals.iter().zip(&costs)) {
         println!(
             "| {what} | {:.1} ms | {:.2} | {:.0} | {:.1} | {:.2} |",

@@ -7,7 +7,7 @@ use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::technique::{LightKind, Truth, Volumes};
 use sunbake_runtime::testing::masks::{ASLANT, assert_right, from_aside, gpu, ground, mask, under_lamp, under_sun};
 use sunbake_runtime::testing::view;
-use sunbake_runtime::volumes::{Mode, Savings};
+use sunbake_runtime::volumes::{Mode, VolumeOptimizations};
 use sunbake_runtime::{Moment, Shot};
 
 const SIZE: [u32; 2] = [128, 128];
@@ -55,10 +55,10 @@ fn v15_each_saving_gives_the_same_mask() {
     let moment = stage.moment(0.5);
     let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.3, 0.1), DVec3::new(2.0, 0.3, 2.0), SIZE)];
     assert_right(&gpu, "v15", &stage, &views, &moment, LightKind::Sun);
-    let without = |edit: fn(&mut Savings)| {
-        let mut savings = Savings::default();
-        edit(&mut savings);
-        savings
+    let without = |edit: fn(&mut VolumeOptimizations)| {
+        let mut optimizations = VolumeOptimizations::default();
+        edit(&mut optimizations);
+        optimizations
     };
     let each = [
         without(|s| s.view_culling = false),
@@ -71,19 +71,19 @@ fn v15_each_saving_gives_the_same_mask() {
     ];
     for view in views {
         let shot = Shot::new(&stage, view);
-        let of = |savings| {
-            let settings = VolumeSettings { savings, ..VolumeSettings::default() };
+        let of = |optimizations| {
+            let settings = VolumeSettings { optimizations, ..VolumeSettings::default() };
             let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
             let seen = mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels;
             // A second frame, for what is kept from the first.
             assert_eq!(mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels, seen);
             (seen, volumes.report().lights[0].triangles)
         };
-        let (expected, triangles) = of(Savings::default());
-        for savings in each {
-            let (seen, other) = of(savings);
-            assert_eq!(seen, expected, "{savings:?}");
-            assert!(other >= triangles, "{savings:?} draws less than all savings together");
+        let (expected, triangles) = of(VolumeOptimizations::default());
+        for optimizations in each {
+            let (seen, other) = of(optimizations);
+            assert_eq!(seen, expected, "{optimizations:?}");
+            assert!(other >= triangles, "{optimizations:?} draws less than all optimizations together");
         }
     }
 }
@@ -156,12 +156,12 @@ fn k1_the_sun_goes_round_and_culling_changes_no_pixel() {
         let stage = under_sun(scene.clone(), DVec3::new(cos, 0.4, sin));
         let moment = stage.moment(0.5);
         let shot = Shot::new(&stage, view(&stage, DVec3::new(2.2, 0.9, 1.8), DVec3::new(0.6, 0.2, 0.2), [96, 96]));
-        let of = |savings| {
-            let settings = VolumeSettings { savings, ..VolumeSettings::default() };
+        let of = |optimizations| {
+            let settings = VolumeSettings { optimizations, ..VolumeSettings::default() };
             let mut volumes = Volumes::new(&gpu, &stage, settings).unwrap();
             (mask(&mut volumes, &shot, &moment, LightKind::Sun).pixels, volumes.report().lights[0].plan)
         };
-        let ((seen, plan), (expected, _)) = (of(Savings::default()), of(Savings::NONE));
+        let ((seen, plan), (expected, _)) = (of(VolumeOptimizations::default()), of(VolumeOptimizations::NONE));
         assert_eq!(seen, expected, "sun at {turn}0 degrees");
         culled += plan.out_of_view + plan.shading_nothing;
         if turn % 9 == 0 {

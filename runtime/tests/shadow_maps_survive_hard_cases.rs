@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::shadow_maps::{Bias, MapSettings, Means, Variant};
+use sunbake_runtime::shadow_maps::{Bias, MapSettings, MapOptimizations, Variant};
 use sunbake_runtime::technique::{ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{ReferenceShot, surface_points};
 use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, under_sun};
@@ -136,7 +136,7 @@ fn m3_a_caster_above_the_map_still_casts() {
     let shot = Shot::new(&stage, from_aside(&stage));
     for variant in Variant::ALL {
         let settings = sized(variant, 512);
-        let unclamped = MapSettings { means: Means { depth_clamp: false, ..Means::default() }, ..settings };
+        let unclamped = MapSettings { optimizations: MapOptimizations { depth_clamp: false, ..MapOptimizations::default() }, ..settings };
         let [clamped, unclamped] = [settings, unclamped].map(|settings| seen(&gpu, &shot, &moment, settings));
         for (i, place) in surface_points(&shot) {
             if place.x < -0.3 && place.x > -5.5 && place.y < 1e-3 && place.z.abs() < 5.5 {
@@ -193,9 +193,9 @@ fn m5_samplers_and_shaders_compare_alike_and_four_taps_mean_what_sixteen_do() {
         let (shot, moment) = (Shot::new(&stage, from_aside(&stage)), stage.moment(0.5));
         for bias in ["none", "texels:2", "slope", "normal,plane", "texels:0.5,plane"] {
             let bias: Bias = bias.parse().unwrap();
-            let unfiltered = Means { filtering: false, ..Means::default() };
+            let unfiltered = MapOptimizations { filtering: false, ..MapOptimizations::default() };
             let [plain, compare] = [Variant::Plain, Variant::Compare].map(|variant| {
-                seen(&gpu, &shot, &moment, MapSettings { bias, means: unfiltered, ..sized(variant, 200) })
+                seen(&gpu, &shot, &moment, MapSettings { bias, optimizations: unfiltered, ..sized(variant, 200) })
             });
             let differ = plain.iter().zip(&compare).filter(|(a, b)| a != b).count();
             assert_eq!(differ, 0, "{bias} under {towards}");

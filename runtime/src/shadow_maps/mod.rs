@@ -142,13 +142,13 @@ pub struct MapSettings {
     pub lamp_filter: Filter,
     /// Whether passes are timed, where the GPU can.
     pub is_timed: bool,
-    /// Features that may be turned off. All are on, except for measurements and tests.
-    pub means: Means,
+    /// All are on, except for measurements and tests.
+    pub optimizations: MapOptimizations,
 }
 
-/// Features of drawing shadow maps that can be turned off.
+/// Features that make shadow maps faster or smoother. Measurements and tests turn some off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Means {
+pub struct MapOptimizations {
     /// Casters above the map are drawn at depth 0 by the GPU's depth clamp. Off: depths begin above them.
     pub depth_clamp: bool,
     /// A sampler's comparisons are filtered, where the GPU can.
@@ -159,7 +159,7 @@ pub struct Means {
     pub sampling: bool,
 }
 
-impl Default for Means {
+impl Default for MapOptimizations {
     fn default() -> Self {
         Self { depth_clamp: true, filtering: true, cache: true, sampling: true }
     }
@@ -175,14 +175,14 @@ impl MapSettings {
             bias: variant.bias(),
             lamp_filter: Filter::default(),
             is_timed: false,
-            means: Means::default(),
+            optimizations: MapOptimizations::default(),
         }
     }
 
     /// Whether the shader gathers depths and filters them itself, each texel against the receiver's plane. Otherwise a
     /// sampler compares (or, for [`Variant::Plain`], the shader).
     pub fn gathers(&self) -> bool {
-        self.bias.has_plane && self.means.filtering && !matches!(self.variant, Variant::Plain | Variant::Planar)
+        self.bias.has_plane && self.optimizations.filtering && !matches!(self.variant, Variant::Plain | Variant::Planar)
     }
 
     /// How far a shadow's edge may be displaced, in texels: the filter's reach, the receiver's offset, and rounding of

@@ -9,7 +9,7 @@ use crate::light::Moment;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::technique::{LightKind, Technique, Truth, Volumes};
-use crate::volumes::{Mode, Savings};
+use crate::volumes::{Mode, VolumeOptimizations};
 use glam::{DMat3, DVec3, Vec2};
 use sunbake::lamp::{LampKey, LampPath};
 use sunbake::scene::{Alpha, Scene};
@@ -50,11 +50,11 @@ pub fn lamp_at(place: DVec3) -> LampPath {
     LampPath::new(vec![key(0.0, 0.0), key(1.0, 1.0)], 0.0, 10.0).expect("the lamp moves")
 }
 
-/// Every way of drawing volumes: each mode with all savings, and three modes without any.
+/// Every way of drawing volumes: each mode with all optimizations, and three modes without any.
 pub fn all_ways() -> Vec<VolumeSettings> {
-    let way = |mode, savings| VolumeSettings { mode, savings, ..VolumeSettings::default() };
-    let saved = Mode::ALL.map(|mode| way(mode, Savings::default()));
-    let unsaved = [Mode::Planned, Mode::Triangles, Mode::Gpu].map(|mode| way(mode, Savings::NONE));
+    let way = |mode, optimizations| VolumeSettings { mode, optimizations, ..VolumeSettings::default() };
+    let saved = Mode::ALL.map(|mode| way(mode, VolumeOptimizations::default()));
+    let unsaved = [Mode::Planned, Mode::Triangles, Mode::Gpu].map(|mode| way(mode, VolumeOptimizations::NONE));
     saved.into_iter().chain(unsaved).collect()
 }
 

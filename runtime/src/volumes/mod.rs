@@ -74,9 +74,10 @@ impl fmt::Display for Mode {
     }
 }
 
-/// Work that a frame leaves out without changing the picture. All are on by default; measurements turn some off.
+/// Optimizations of shadow volumes: work that a frame leaves out without changing the picture. All are on by
+/// default; measurements turn some off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Savings {
+pub struct VolumeOptimizations {
     /// Casters whose volumes miss the view.
     pub view_culling: bool,
     /// Casters whose volumes hold no surface that is in view.
@@ -93,7 +94,7 @@ pub struct Savings {
     pub cache: bool,
 }
 
-impl Default for Savings {
+impl Default for VolumeOptimizations {
     fn default() -> Self {
         Self {
             view_culling: true,
@@ -107,7 +108,7 @@ impl Default for Savings {
     }
 }
 
-impl Savings {
+impl VolumeOptimizations {
     /// None of them.
     pub const NONE: Self = Self {
         view_culling: false,

@@ -4,7 +4,7 @@ use super::casters::Casters;
 use super::culling::{Frustum, Receivers, Targets, is_in_range};
 use super::light::{Facings, Light};
 use super::silhouettes::{Part, Parts};
-use super::{Mode, Savings};
+use super::{Mode, VolumeOptimizations};
 use crate::View;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -82,11 +82,11 @@ impl FramePlan {
         light: &Light,
         view: &View,
         mode: Mode,
-        savings: Savings,
+        optimizations: VolumeOptimizations,
     ) -> Self {
         let frustum = Frustum::new(view);
         let targets = Targets::new(receivers.in_view(&frustum, light), &frustum, light);
-        let chooser = Chooser { casters, facings, light, frustum: &frustum, targets: &targets, mode, savings };
+        let chooser = Chooser { casters, facings, light, frustum: &frustum, targets: &targets, mode, optimizations };
         let chosen: Vec<Choice> = (0..casters.all.len()).into_par_iter().map(|i| chooser.choose(i)).collect();
         let mut counts = PlanCounts { casters: chosen.len(), ..PlanCounts::default() };
         for choice in &chosen {
@@ -106,7 +106,7 @@ impl FramePlan {
             Choice::Drawn(draw, _) => Some(*draw),
             _ => None,
         };
-        let scissor = match savings.scissor {
+        let scissor = match optimizations.scissor {
             true => targets.pixels(&frustum, view, light),
             false => [0, 0, view.size[0], view.size[1]],
         };
@@ -160,7 +160,7 @@ struct Chooser<'a> {
     frustum: &'a Frustum,
     targets: &'a Targets,
     mode: Mode,
-    savings: Savings,
+    optimizations: VolumeOptimizations,
 }
 
 impl Chooser<'_> {
@@ -170,22 +170,22 @@ impl Chooser<'_> {
         if !is_in_range(&caster.bounds_m, self.light) || !casts() {
             return Choice::CastingNothing;
         }
-        if self.savings.view_culling && self.frustum.misses_volume(&caster.bounds_m, self.light) {
+        if self.optimizations.view_culling && self.frustum.misses_volume(&caster.bounds_m, self.light) {
             return Choice::OutOfView;
         }
-        if self.savings.receiver_culling && !self.targets.any_behind(caster, self.light) {
+        if self.optimizations.receiver_culling && !self.targets.any_behind(caster, self.light) {
             return Choice::ShadingNothing;
         }
         let wants_z_pass = match self.mode {
             Mode::ZPass => true,
             Mode::ZFail | Mode::Triangles => false,
-            Mode::Planned | Mode::Gpu => self.savings.z_pass,
+            Mode::Planned | Mode::Gpu => self.optimizations.z_pass,
         };
         if wants_z_pass && self.allows_z_pass(index) {
             return Choice::Drawn(StencilMethod::ZPass { dark_caps: self.light.has_range() }, false);
         }
-        let caps = !self.savings.cap_culling || !self.frustum.misses(&caster.bounds_m);
-        let dark_caps = !self.savings.cap_culling || !self.frustum.misses_far_end(&caster.bounds_m, self.light);
+        let caps = !self.optimizations.cap_culling || !self.frustum.misses(&caster.bounds_m);
+        let dark_caps = !self.optimizations.cap_culling || !self.frustum.misses_far_end(&caster.bounds_m, self.light);
         Choice::Drawn(StencilMethod::ZFail { caps, dark_caps }, self.mode == Mode::ZPass)
     }
 

@@ -14,7 +14,7 @@ use sunbake_runtime::technique::{LightKind, Technique, Volumes};
 use sunbake_runtime::testing::masks::{
     agreement, all_ways, camera_in_shadow, cameras_around, gpu, mask, with_solid_leaves,
 };
-use sunbake_runtime::volumes::{Mode, Savings};
+use sunbake_runtime::volumes::{Mode, VolumeOptimizations};
 use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
 use sunbake_tests::needs::{of_gas_station, of_scene};
 
@@ -57,7 +57,7 @@ fn masks_are_right(scene: &Path, edge_px: u32) {
 
 /// Drawing a prism for each of a city's triangles, anew each frame, would take minutes.
 fn is_quick(way: &VolumeSettings) -> bool {
-    way.mode != Mode::Triangles || way.savings == Savings::default()
+    way.mode != Mode::Triangles || way.optimizations == VolumeOptimizations::default()
 }
 
 /// At one time of day, or two at full size: one camera of those around the scene, and both in shadow.

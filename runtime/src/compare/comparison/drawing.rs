@@ -8,10 +8,10 @@ use super::times::timed_frame;
 use super::{Comparison, FrameRequest};
 use crate::gpu::VolumeSettings;
 use crate::image::Raster;
-use crate::shadow_maps::{MapSettings, Means, Variant};
+use crate::shadow_maps::{MapSettings, MapOptimizations, Variant};
 use crate::stage::Stage;
 use crate::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Volumes};
-use crate::volumes::Savings;
+use crate::volumes::VolumeOptimizations;
 use std::time::Instant;
 
 /// What a technique drew, frame by frame, and what it cost.
@@ -50,8 +50,8 @@ impl Comparison<'_> {
                 Err(NotDrawn::Unsupported("needs a GPU adapter, and there is none here".into()))
             }
             (TechniqueSpec::Volumes(mode), Some(gpu)) => {
-                let savings = Savings { cache: false, ..Savings::default() };
-                let settings = VolumeSettings { mode, savings, is_timed: true, ..VolumeSettings::default() };
+                let optimizations = VolumeOptimizations { cache: false, ..VolumeOptimizations::default() };
+                let settings = VolumeSettings { mode, optimizations, is_timed: true, ..VolumeSettings::default() };
                 draw_frames(&mut Volumes::new(gpu, stage, settings)?, self.rounds, start, frames, on_frame)
             }
             (TechniqueSpec::Map(variant), Some(gpu)) => {
@@ -64,9 +64,9 @@ impl Comparison<'_> {
     /// How a variant of shadow maps is drawn.
     fn map_settings(&self, variant: Variant) -> MapSettings {
         let settings = MapSettings::new(variant);
-        let means = Means { cache: false, ..Means::default() };
+        let optimizations = MapOptimizations { cache: false, ..MapOptimizations::default() };
         let size_texels = self.map_size_texels.unwrap_or(settings.size_texels);
-        MapSettings { means, is_timed: true, size_texels, ..settings }
+        MapSettings { optimizations, is_timed: true, size_texels, ..settings }
     }
 }
 

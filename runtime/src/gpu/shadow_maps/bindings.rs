@@ -44,7 +44,7 @@ impl MapReads {
     /// What surfaces read. `halfway` is what a comparison sampler reads between light and shade; none where no
     /// sampler compares.
     pub fn new(settings: &MapSettings, has_ground: bool, halfway: Option<f32>) -> Self {
-        let filters = |halfway: f32| settings.means.filtering && halfway > 0.0 && halfway < 1.0;
+        let filters = |halfway: f32| settings.optimizations.filtering && halfway > 0.0 && halfway < 1.0;
         Self {
             has_depths: settings.variant != Variant::Planar,
             tap: match halfway.map(filters) {

@@ -179,7 +179,7 @@ impl<'g> MapRenderer<'g> {
 
     /// Whether casters above a map are clamped to its top.
     fn clamps_depth(&self) -> bool {
-        self.settings.means.depth_clamp && self.gpu.clamps_depth()
+        self.settings.optimizations.depth_clamp && self.gpu.clamps_depth()
     }
 
     /// How the sun lights a view at a moment, with the maps that it needs.

@@ -28,7 +28,7 @@ impl MapRenderer<'_> {
             self.mask_pass(encoder, size);
             return;
         }
-        if self.settings.means.cache && self.drawn == maps {
+        if self.settings.optimizations.cache && self.drawn == maps {
             return;
         }
         self.report.drawn = maps.len();

@@ -93,7 +93,7 @@ impl MapNeeds {
 
     /// What is read of the sun for a batch.
     fn sun_of(&self, key: &BatchKey) -> SunReads {
-        let is_read = self.settings.means.sampling;
+        let is_read = self.settings.optimizations.sampling;
         match self.shading {
             _ if self.output == Output::LampVisibility => SunReads::Down,
             SunShading::Down => SunReads::Down,

@@ -68,7 +68,7 @@ impl LightNeedsBound<'_> {
         let wants_z_pass = match self.settings.mode {
             Mode::ZPass => true,
             Mode::ZFail | Mode::Triangles => false,
-            Mode::Planned | Mode::Gpu => self.settings.savings.z_pass,
+            Mode::Planned | Mode::Gpu => self.settings.optimizations.z_pass,
         };
         let hides_caps = self.casters.all.iter().any(|c| c.shows_both_sides || (c.shows_fronts && c.is_solid));
         let (corners, parts) = match (self.finds_on_gpu(), is_lamp) {

@@ -1,7 +1,7 @@
 //! What is drawn of the volumes for a view.
 
 use super::extruded::{CountedRun, Extruded};
-use crate::volumes::{FramePlan, Part, Savings};
+use crate::volumes::{FramePlan, Part, VolumeOptimizations};
 use std::ops::Range;
 use sunbake_shaders::VolumeCorners;
 
@@ -24,8 +24,8 @@ pub struct VolumeDraws {
 
 impl VolumeDraws {
     /// The draws of a plan.
-    pub fn new(extruded: &Extruded, plan: &FramePlan, savings: Savings) -> Self {
-        let of_run = |run| [true, false].map(|is_z_pass| draws(extruded, run, plan, is_z_pass, savings));
+    pub fn new(extruded: &Extruded, plan: &FramePlan, optimizations: VolumeOptimizations) -> Self {
+        let of_run = |run| [true, false].map(|is_z_pass| draws(extruded, run, plan, is_z_pass, optimizations));
         let runs = match plan.draws_anything() {
             true => extruded.runs.iter().map(of_run).collect(),
             false => Vec::new(),
@@ -46,7 +46,7 @@ impl VolumeDraws {
     }
 }
 
-fn draws(extruded: &Extruded, run: &CountedRun, plan: &FramePlan, is_z_pass: bool, savings: Savings) -> Vec<FaceDraw> {
+fn draws(extruded: &Extruded, run: &CountedRun, plan: &FramePlan, is_z_pass: bool, optimizations: VolumeOptimizations) -> Vec<FaceDraw> {
     let draw = |part, instances| move |corners| FaceDraw { part, corners, instances };
     if extruded.kind.1 == VolumeCorners::Indexed {
         return plan
@@ -56,7 +56,7 @@ fn draws(extruded: &Extruded, run: &CountedRun, plan: &FramePlan, is_z_pass: boo
             .collect();
     }
     let walls = |doubles: bool| {
-        let is_wanted = |caster| extruded.may_double(caster, savings) == doubles;
+        let is_wanted = |caster| extruded.may_double(caster, optimizations) == doubles;
         let ranges = plan.ranges(&run.parts, is_z_pass, &[Part::Walls], is_wanted);
         ranges.into_iter().map(draw(Part::Walls, 1 + u32::from(doubles)))
     };

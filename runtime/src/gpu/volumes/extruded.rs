@@ -6,7 +6,7 @@ use crate::volumes::nearest::distance_m;
 use crate::volumes::overlap;
 use crate::volumes::silhouettes::volumes;
 use crate::volumes::{
-    Casters, Extrusion, Facings, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, Savings, Sharing,
+    Casters, Extrusion, Facings, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, VolumeOptimizations, Sharing,
 };
 use std::borrow::Cow;
 use std::time::Instant;
@@ -52,10 +52,10 @@ impl Extruded {
         buffers: &CasterBuffers,
         light: Light,
         mode: Mode,
-        savings: Savings,
+        optimizations: VolumeOptimizations,
     ) -> Result<Self, GpuError> {
         let started = Instant::now();
-        let facings = light.facings(casters, savings.solids);
+        let facings = light.facings(casters, optimizations.solids);
         let counting = Instant::now();
         let runs = match overlap::runs(casters, &facings.of_triangle, &light, MOST_COUNTED) {
             one if one.len() == 1 => one,
@@ -165,8 +165,8 @@ impl Extruded {
     }
 
     /// Whether a caster's edges may need two walls, where the vertex shader finds them.
-    pub fn may_double(&self, caster: usize, savings: Savings) -> bool {
-        !(savings.solids && self.facings.is_solid[caster])
+    pub fn may_double(&self, caster: usize, optimizations: VolumeOptimizations) -> bool {
+        !(optimizations.solids && self.facings.is_solid[caster])
     }
 }
 

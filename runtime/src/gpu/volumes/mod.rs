@@ -37,7 +37,7 @@ use crate::View;
 use crate::light::Moment;
 use crate::stage::Stage;
 use crate::volumes::culling::Receivers;
-use crate::volumes::{CasterCounts, Casters, Mode, Savings};
+use crate::volumes::{CasterCounts, Casters, Mode, VolumeOptimizations};
 use caster_buffers::CasterBuffers;
 use extruded::Extruded;
 use glam::Vec3;
@@ -51,7 +51,7 @@ pub struct VolumeSettings {
     /// How volumes are made and counted.
     pub mode: Mode,
     /// What may be left out.
-    pub savings: Savings,
+    pub optimizations: VolumeOptimizations,
     /// Point suns that stand for the sun's disc: 1 for its centre alone, with hard edges. Time grows in proportion.
     pub sun_samples: u32,
     /// Whether passes are timed, if the GPU can.
@@ -60,7 +60,7 @@ pub struct VolumeSettings {
 
 impl Default for VolumeSettings {
     fn default() -> Self {
-        Self { mode: Mode::Planned, savings: Savings::default(), sun_samples: 1, is_timed: false }
+        Self { mode: Mode::Planned, optimizations: VolumeOptimizations::default(), sun_samples: 1, is_timed: false }
     }
 }
 

@@ -150,11 +150,11 @@ impl VolumeRenderer<'_> {
     /// Makes sure that the kept volumes are those of this light.
     pub(super) fn extrude(&mut self, light: &Light) -> Result<FindSeconds, GpuError> {
         let kept = &self.extruded[light_index(light)];
-        if self.settings.savings.cache && kept.as_ref().is_some_and(|extruded| extruded.light == *light) {
+        if self.settings.optimizations.cache && kept.as_ref().is_some_and(|extruded| extruded.light == *light) {
             return Ok([0.0; 2]);
         }
-        let VolumeSettings { mode, savings, .. } = self.settings;
-        let extruded = Extruded::new(self.gpu, &self.casters, &self.buffers, *light, mode, savings)?;
+        let VolumeSettings { mode, optimizations, .. } = self.settings;
+        let extruded = Extruded::new(self.gpu, &self.casters, &self.buffers, *light, mode, optimizations)?;
         let seconds = [extruded.find_seconds, extruded.overlap_seconds];
         self.extruded[light_index(light)] = Some(extruded);
         Ok(seconds)
@@ -162,10 +162,10 @@ impl VolumeRenderer<'_> {
 
     /// What to draw of a light's volumes.
     pub(super) fn frame_plan(&self, view: &View, light: &Light) -> (FramePlan, VolumeDraws) {
-        let VolumeSettings { mode, savings, .. } = self.settings;
+        let VolumeSettings { mode, optimizations, .. } = self.settings;
         let extruded = self.extruded[light_index(light)].as_ref().expect("a light is planned once it has extruded");
-        let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.facings, light, view, mode, savings);
-        let draws = VolumeDraws::new(extruded, &plan, savings);
+        let plan = FramePlan::new(&self.casters, &self.receivers, &extruded.facings, light, view, mode, optimizations);
+        let draws = VolumeDraws::new(extruded, &plan, optimizations);
         (plan, draws)
     }
 
