@@ -168,7 +168,7 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
 
 fn seams(entry: &SeamEntry) -> String {
     match entry.points {
-        0 => "no surface is cut".into(),
+        0 => "no surface has any".into(),
         _ => format!(
             "{:.4} apart on average ({:.4} before they were healed), 99 % under {:.4}, worst {:.4}",
             entry.mean, entry.mean_before, entry.p99, entry.worst
