@@ -127,8 +127,8 @@ pub fn opaque() -> Material {
     }
 }
 
-/// A double-sided material whose texture cuts holes at alpha one half.
-pub fn cut(texture: TextureRef) -> Material {
+/// A double-sided material whose texture is an alpha mask with a cutoff of one half.
+pub fn alpha_masked(texture: TextureRef) -> Material {
     Material {
         base_color_texture: Some(texture),
         alpha: Alpha::Mask { cutoff: 0.5 },

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, floor};
 use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::technique::{LightKind, Truth, Volumes};
-use sunbake_runtime::testing::masks::{ASLANT, assert_right, from_aside, gpu, ground, mask, under_lamp, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, assert_right, oblique_view, gpu, ground, mask, under_lamp, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Mode, VolumeOptimizations};
 use sunbake_runtime::{Moment, Shot};
@@ -32,7 +32,7 @@ fn v14_infinite_volumes_reach_far_surfaces_and_leave_the_background() {
     let stage =
         under_lamp(SceneBuilder::new().block(Vec3::splat(-0.5), Vec3::splat(0.5)).build(), DVec3::new(0.9, 1.4, 0.3));
     let moment = stage.moment(0.0);
-    let views = [from_aside(&stage), view(&stage, DVec3::new(-0.7, -0.8, -0.2), DVec3::new(-3.0, -4.0, -1.0), SIZE)];
+    let views = [oblique_view(&stage), view(&stage, DVec3::new(-0.7, -0.8, -0.2), DVec3::new(-3.0, -4.0, -1.0), SIZE)];
     assert_right(&gpu, "v14, lamp", &stage, &views, &moment, LightKind::Lamp);
     let shot = Shot::new(&stage, views[1]);
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
@@ -51,9 +51,9 @@ fn v15_each_saving_gives_the_same_mask() {
             at.y + 0.9,
         ))
     });
-    let stage = under_sun(scene.build(), ASLANT);
+    let stage = under_sun(scene.build(), OBLIQUE_SUN);
     let moment = stage.moment(0.5);
-    let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.3, 0.1), DVec3::new(2.0, 0.3, 2.0), SIZE)];
+    let views = [oblique_view(&stage), view(&stage, DVec3::new(0.2, 0.3, 0.1), DVec3::new(2.0, 0.3, 2.0), SIZE)];
     assert_right(&gpu, "v15", &stage, &views, &moment, LightKind::Sun);
     let without = |edit: fn(&mut VolumeOptimizations)| {
         let mut optimizations = VolumeOptimizations::default();
@@ -96,7 +96,7 @@ fn v16_finite_volumes_equal_infinite_ones_within_the_lamps_range() {
         .block(Vec3::new(0.5, 0.4, 0.2), Vec3::new(1.1, 0.9, 0.9))
         .soup(&floor(Vec2::new(1.0, -2.0), Vec2::new(2.0, -1.0), 0.8));
     let stage = under_lamp(scene.build(), DVec3::new(0.2, 1.7, 0.1));
-    let views = [from_aside(&stage), view(&stage, DVec3::new(1.5, 0.5, -1.6), DVec3::new(5.0, 0.0, -4.0), SIZE)];
+    let views = [oblique_view(&stage), view(&stage, DVec3::new(1.5, 0.5, -1.6), DVec3::new(5.0, 0.0, -4.0), SIZE)];
     let endless = stage.moment(0.0);
     assert_right(&gpu, "v16", &stage, &views, &endless, LightKind::Lamp);
     let range_m = 3.5;

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, Mat3, Vec2, Vec3};
 use sunbake::maps::Bits;
 use sunbake::scene::{Mesh, Scene, TextureRef, Wrap};
 use sunbake::sun::SunPath;
-use sunbake::testing::{SceneBuilder, block, cut, floor, opaque};
+use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, opaque};
 use sunbake_runtime::compare::{Agreement, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
@@ -163,7 +163,7 @@ fn leaf() -> Scene {
     let card = Mesh { indices: (0..6).collect(), positions, texcoords: [Some(uvs), None], ..Mesh::default() };
     builder
         .soup(&floor(Vec2::splat(-2.0), Vec2::splat(2.0), 0.0))
-        .mesh_of(card, cut(texture), &[DMat4::IDENTITY])
+        .mesh_of(card, alpha_masked(texture), &[DMat4::IDENTITY])
         .build()
 }
 

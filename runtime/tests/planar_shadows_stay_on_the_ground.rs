@@ -7,7 +7,7 @@ use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
 use sunbake_runtime::testing::maps::surface_points;
-use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, mask, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, oblique_view, gpu, ground, mask, under_sun};
 use sunbake_runtime::{Shot, Stage};
 
 fn seen(gpu: &Gpu, shot: &Shot, variant: Variant) -> Vec<f32> {
@@ -26,7 +26,7 @@ fn j1_a_light_level_with_the_plane_gives_finite_numbers() {
     for height in [0.0, 1e-30, 1e-12, 1e-6, 1e-3, 0.02] {
         let scene = ground().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5)).build();
         let stage = under_sun(scene, DVec3::new(-1.0, height, 0.2));
-        let shot = Shot::new(&stage, from_aside(&stage));
+        let shot = Shot::new(&stage, oblique_view(&stage));
         let seen = seen(&gpu, &shot, Variant::Planar);
         assert!(seen.iter().all(|v| *v == 0.0 || *v == 1.0), "{height}");
         let is_up = stage.moment(0.5).sun_direction.y > 0.0;
@@ -43,16 +43,16 @@ fn j1_a_caster_below_the_plane_casts_nothing_on_it() {
     let gpu = gpu();
     // A caster below would be projected up on to the plane, against the light.
     let scene = ground().block(Vec3::new(-1.0, -3.0, -1.0), Vec3::new(1.0, -1.0, 1.0)).build();
-    let stage = under_sun(scene, ASLANT);
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let stage = under_sun(scene, OBLIQUE_SUN);
+    let shot = Shot::new(&stage, oblique_view(&stage));
     for variant in [Variant::Planar, Variant::Ground] {
         let seen = seen(&gpu, &shot, variant);
         assert!(on_ground(&shot).iter().all(|(i, _)| seen[*i] == 1.0), "{variant}");
     }
     // Of a caster that crosses the plane only the part above it casts.
     let half = ground().block(Vec3::new(-1.0, -3.0, -1.0), Vec3::new(1.0, 1.0, 1.0)).build();
-    let stage = under_sun(half, ASLANT);
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let stage = under_sun(half, OBLIQUE_SUN);
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), LightKind::Sun).pixels;
     let seen = seen(&gpu, &shot, Variant::Planar);
     let differ = on_ground(&shot).into_iter().filter(|(i, _)| seen[*i] != truth[*i]).count();
@@ -66,7 +66,7 @@ fn j1_casters_that_overlap_do_not_darken_twice() {
     let light_of = |count: usize| {
         let roofs: Vec<_> = (0..count).flat_map(|i| roof(3.0 + i as f32)).collect();
         let stage = under_sun(ground().soup(&roofs).build(), DVec3::Y);
-        let shot = Shot::new(&stage, from_aside(&stage));
+        let shot = Shot::new(&stage, oblique_view(&stage));
         let mut maps = ShadowMaps::new(&gpu, &stage, MapSettings::new(Variant::Planar)).unwrap();
         let lit = maps.color(&shot, &stage.moment(0.5)).unwrap();
         // In the middle of the shadow.
@@ -86,7 +86,7 @@ fn j1_a_finite_ground_clips_its_shadows_and_nothing_else_is_shaded() {
         .block(Vec3::new(-5.0, -1.0, -4.0), Vec3::new(-4.0, 2.0, 4.0))
         .build();
     let stage = under_sun(scene, DVec3::new(1.0, 0.8, 0.1));
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let seen = seen(&gpu, &shot, Variant::Planar);
     let moment = stage.moment(0.5);
     let truth = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun).pixels;
@@ -114,7 +114,7 @@ fn without_a_level_plane_there_is_no_ground_and_nothing_is_shaded_or_built() {
     let gpu = gpu();
     let slope = [[Vec3::new(-3.0, 0.0, -3.0), Vec3::new(0.0, 1.0, 3.0), Vec3::new(3.0, 0.5, -3.0)]];
     let stage: Stage = under_sun(SceneBuilder::new().soup(&slope).build(), DVec3::new(0.1, 1.0, 0.2));
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let mut maps = ShadowMaps::new(&gpu, &stage, MapSettings::new(Variant::Planar)).unwrap();
     let seen = maps.visibility(&shot, &stage.moment(0.5)).unwrap();
     let census = maps.census().unwrap();
@@ -129,8 +129,8 @@ fn a_ground_that_lies_there_twice_or_turned_over_does_not_shade_itself() {
     let turned: Vec<[Vec3; 3]> = level.iter().map(|&[a, b, c]| [a, c, b]).collect();
     for twin in [level.clone(), turned] {
         let scene = || SceneBuilder::new().soup(&level).soup(&twin);
-        let stage = under_sun(scene().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5)).build(), ASLANT);
-        let shot = Shot::new(&stage, from_aside(&stage));
+        let stage = under_sun(scene().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5)).build(), OBLIQUE_SUN);
+        let shot = Shot::new(&stage, oblique_view(&stage));
         let truth = mask(&mut Truth::Hard, &shot, &stage.moment(0.5), LightKind::Sun).pixels;
         for variant in [Variant::Planar, Variant::Ground, Variant::Cascades] {
             let seen = seen(&gpu, &shot, variant);
@@ -143,7 +143,7 @@ fn a_ground_that_lies_there_twice_or_turned_over_does_not_shade_itself() {
 #[test]
 fn a_roof_is_no_ground() {
     let roof = block(Vec3::new(-8.0, 5.0, -8.0), Vec3::new(8.0, 5.2, 8.0));
-    let stage = under_sun(ground().soup(&roof).build(), ASLANT);
+    let stage = under_sun(ground().soup(&roof).build(), OBLIQUE_SUN);
     let found = sunbake_runtime::shadow_maps::Ground::new(&stage).height_m.unwrap() + stage.scene.centre_m.y;
     assert!(found.abs() < 1e-3, "{found}");
 }

@@ -7,7 +7,7 @@ use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{Bias, MapSettings, MapOptimizations, Variant};
 use sunbake_runtime::technique::{ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{ReferenceShot, surface_points};
-use sunbake_runtime::testing::masks::{ASLANT, from_aside, gpu, ground, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, oblique_view, gpu, ground, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
 
@@ -83,8 +83,8 @@ fn m1_a_plane_at_a_grazing_sun_does_not_shade_itself() {
         }
     }
     // Without a bias there is acne, so the test can fail.
-    let stage = under_sun(ground_that_casts().build(), ASLANT);
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let stage = under_sun(ground_that_casts().build(), OBLIQUE_SUN);
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let bare = MapSettings { bias: Bias::NONE, ..sized(Variant::Compare, 128) };
     assert!(seen(&gpu, &shot, &stage.moment(0.5), bare).iter().any(|&v| v < 0.9));
 }
@@ -133,7 +133,7 @@ fn m3_a_caster_above_the_map_still_casts() {
     let scene = || ground().soup(&roof).block(Vec3::new(0.5, 0.0, -0.5), Vec3::new(1.5, 1.0, 0.5)).build();
     let stage = under_sun(scene(), DVec3::Y);
     let moment = stage.moment(0.5);
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let shot = Shot::new(&stage, oblique_view(&stage));
     for variant in Variant::ALL {
         let settings = sized(variant, 512);
         let unclamped = MapSettings { optimizations: MapOptimizations { depth_clamp: false, ..MapOptimizations::default() }, ..settings };
@@ -157,7 +157,7 @@ fn m3_a_caster_above_the_map_still_casts() {
 fn m4_receivers_outside_the_map_are_lit_and_borders_do_not_smear() {
     let gpu = gpu();
     let roof = block(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 1.2, 1.0));
-    let stage = under_sun(ground().soup(&roof).build(), ASLANT);
+    let stage = under_sun(ground().soup(&roof).build(), OBLIQUE_SUN);
     let moment = stage.moment(0.5);
     let shot = Shot::new(&stage, view(&stage, DVec3::new(4.1, 7.7, 5.3), DVec3::new(0.1, 0.0, -0.2), SIZE));
     for variant in Variant::ALL {
@@ -188,9 +188,9 @@ fn m5_samplers_and_shaders_compare_alike_and_four_taps_mean_what_sixteen_do() {
             .block(Vec3::new(1.0, 0.5, 0.2), Vec3::new(2.0, 0.9, 1.6))
             .build()
     };
-    for towards in [ASLANT, DVec3::Y, DVec3::new(-0.9, 0.2, 0.3)] {
+    for towards in [OBLIQUE_SUN, DVec3::Y, DVec3::new(-0.9, 0.2, 0.3)] {
         let stage = under_sun(scene(), towards);
-        let (shot, moment) = (Shot::new(&stage, from_aside(&stage)), stage.moment(0.5));
+        let (shot, moment) = (Shot::new(&stage, oblique_view(&stage)), stage.moment(0.5));
         for bias in ["none", "texels:2", "slope", "normal,plane", "texels:0.5,plane"] {
             let bias: Bias = bias.parse().unwrap();
             let unfiltered = MapOptimizations { filtering: false, ..MapOptimizations::default() };
@@ -323,7 +323,7 @@ fn m8_views_from_a_millimetre_to_a_hundred_kilometres_are_finite() {
         .block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.0, 0.5))
         .block(Vec3::new(4e4, 0.0, 4e4), Vec3::new(4.1e4, 3e3, 4.1e4))
         .build();
-    let stage = under_sun(scene, ASLANT);
+    let stage = under_sun(scene, OBLIQUE_SUN);
     let close = view(&stage, DVec3::new(-2.6, 1.4, -1.9), DVec3::new(-0.8, 0.0, -0.5), SIZE);
     let ends = sunbake_runtime::shadow_maps::cascades::splits(1e-3, 1e5, 4);
     assert!(ends.windows(2).all(|pair| pair[0] < pair[1]) && ends.iter().all(|end| end.is_finite()));

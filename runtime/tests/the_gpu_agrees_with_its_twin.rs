@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, cut, floor, icosphere, opaque, pseudo_random};
+use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, icosphere, opaque, pseudo_random};
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
@@ -77,7 +77,7 @@ fn everything(wrap: Wrap) -> Scene {
         .mesh_of(dressed(&floor(Vec2::splat(-5.0), Vec2::splat(5.0), 0.0)), textured, &[DMat4::IDENTITY])
         .mesh_of(
             dressed(&wall),
-            cut(texture),
+            alpha_masked(texture),
             &[DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)), DMat4::from_translation(DVec3::new(2.0, 0.0, 1.2))],
         )
         .mesh_of(

@@ -9,7 +9,7 @@ use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{
-    ASLANT, assert_right, assert_ways_agree, compare_ways, from_aside, gpu, ground, lamp_at, mask, under_lamp,
+    OBLIQUE_SUN, assert_right, assert_ways_agree, compare_ways, oblique_view, gpu, ground, lamp_at, mask, under_lamp,
     under_sun,
 };
 use sunbake_runtime::testing::{equinox, view};
@@ -41,7 +41,7 @@ fn a_finite_volume_ends_beyond_the_range_of_what_is_nearest_to_the_lamp() {
     // the range.
     let wall = floor(Vec2::new(-2.5, -2.5), Vec2::new(2.5, 2.5), 1.0);
     let stage = under_lamp(ground().soup(&wall).build(), DVec3::new(0.1, 1.2, -0.2));
-    let views = [view(&stage, DVec3::new(5.5, 0.8, 4.9), DVec3::new(0.0, 0.2, 0.0), SIZE), from_aside(&stage)];
+    let views = [view(&stage, DVec3::new(5.5, 0.8, 4.9), DVec3::new(0.0, 0.2, 0.0), SIZE), oblique_view(&stage)];
     assert_right(&gpu(), "wide wall", &stage, &views, &with_range(&stage, 5.0), LightKind::Lamp);
 }
 
@@ -56,7 +56,7 @@ fn every_way_agrees_about_a_lamp_that_touches_a_caster() {
     let places = [b, (a + c) * 0.5].into_iter().chain(heights.map(|height| middle + normal * height));
     for (i, at) in places.enumerate() {
         let stage = under_lamp(scene(), at);
-        let views = [from_aside(&stage)];
+        let views = [oblique_view(&stage)];
         let moments = [stage.moment(0.0), with_range(&stage, 5.0)];
         for moment in moments {
             let name = format!("touching, place {i}");
@@ -81,7 +81,7 @@ fn a_room_modelled_from_inside_shades_what_is_in_it() {
         let inside = view(stage, DVec3::new(2.0, 1.7, 2.2), DVec3::new(0.0, 0.6, 0.0), SIZE);
         [inside, view(stage, DVec3::new(8.0, 7.0, 6.0), DVec3::new(0.0, 0.6, 0.0), SIZE)]
     };
-    let stage = under_sun(scene(), ASLANT);
+    let stage = under_sun(scene(), OBLIQUE_SUN);
     assert_right(&gpu, "room, sun", &stage, &views(&stage), &stage.moment(0.5), LightKind::Sun);
     for at in [DVec3::new(1.1, 2.1, -0.3), DVec3::new(4.0, 5.0, 1.0)] {
         let stage = under_lamp(scene(), at);
@@ -150,7 +150,7 @@ fn no_light_inherits_the_stencil_of_the_last() {
     // One renderer draws the moving sun, and a new renderer draws each of its positions.
     let scene = || ground().block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.4, 1.2, 0.5)).build();
     let stage = Stage::plain(scene(), Some(equinox(40.0)));
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let mut moving = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
     for t in [0.2, 0.5, 0.8, 0.5] {
         let moment = stage.moment(t);
@@ -160,7 +160,7 @@ fn no_light_inherits_the_stencil_of_the_last() {
     }
     // A sun that shades, then a lamp without casters in its range: the stencil of the sun does not count for the lamp.
     let stage = Stage::plain(scene(), Some(equinox(40.0))).with_lamp(Some(&lamp_at(DVec3::new(2.5, 0.9, 2.5))));
-    let shot = Shot::new(&stage, from_aside(&stage));
+    let shot = Shot::new(&stage, oblique_view(&stage));
     let moment = Moment { lamp: with_range(&stage, 1.2).lamp, ..stage.moment(0.4) };
     let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
     let seen = mask(&mut Truth::Hard, &shot, &moment, LightKind::Sun);

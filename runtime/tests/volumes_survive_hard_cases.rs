@@ -6,7 +6,7 @@ use sunbake::scene::{Material, Mesh, Scene};
 use sunbake::testing::{SceneBuilder, block, floor, icosphere, opaque};
 use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::technique::{LightKind, Technique, Volumes};
-use sunbake_runtime::testing::masks::{ASLANT, assert_right, from_aside, gpu, ground, mask, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, assert_right, oblique_view, gpu, ground, mask, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Casters, Mode};
 use sunbake_runtime::{Shot, View};
@@ -24,7 +24,7 @@ fn moved(triangles: &[[Vec3; 3]], by: Vec3) -> Vec<[Vec3; 3]> {
 /// Every way of drawing a scene under a sun is right, from aside and from below the ground's edge.
 fn assert_sun(name: &str, scene: Scene, towards: DVec3) {
     let stage = under_sun(scene, towards);
-    let views = [from_aside(&stage), view(&stage, DVec3::new(-5.2, 0.8, -4.9), DVec3::new(0.0, 0.5, 0.0), SIZE)];
+    let views = [oblique_view(&stage), view(&stage, DVec3::new(-5.2, 0.8, -4.9), DVec3::new(0.0, 0.5, 0.0), SIZE)];
     let moment = stage.moment(0.5);
     assert_right(&gpu(), name, &stage, &views, &moment, LightKind::Sun);
 }
@@ -68,7 +68,7 @@ fn v2_the_near_plane_passes_through_a_volumes_wall() {
 
 #[test]
 fn v3_the_near_plane_passes_through_the_caster() {
-    let stage = under_sun(ground().block(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 2.0, 1.0)).build(), ASLANT);
+    let stage = under_sun(ground().block(Vec3::new(-1.0, 1.0, -1.0), Vec3::new(1.0, 2.0, 1.0)).build(), OBLIQUE_SUN);
     let views: Vec<View> = (0..24)
         .map(|step| {
             let y = 0.9 + f64::from(step) * 0.05 + 1e-7;
@@ -107,7 +107,7 @@ fn v5_255_256_and_257_casters_lie_in_a_stack() {
             ground().soup(&(0..count).flat_map(sheet).collect::<Vec<_>>()).build(),
             DVec3::new(0.1, 1.0, 0.05),
         );
-        let shot = Shot::new(&stage, from_aside(&stage));
+        let shot = Shot::new(&stage, oblique_view(&stage));
         let moment = stage.moment(0.5);
         assert_right(&gpu, &format!("v5, {count}"), &stage, &[shot.view], &moment, LightKind::Sun);
         // Counted without a stencil, the darkest pixels lie in as many prisms as there are casters. A stencil of 8
@@ -138,8 +138,8 @@ fn v6_casters_that_cross_and_nest_are_right_in_any_order() {
     let mut first = None;
     for order in [[0, 1, 2, 3], [3, 2, 1, 0], [2, 0, 3, 1]] {
         let builder = order.iter().fold(ground(), |builder, &i| builder.soup(&blocks[i]));
-        let stage = under_sun(builder.build(), ASLANT);
-        let (view, moment) = (from_aside(&stage), stage.moment(0.5));
+        let stage = under_sun(builder.build(), OBLIQUE_SUN);
+        let (view, moment) = (oblique_view(&stage), stage.moment(0.5));
         assert_right(&gpu, "v6", &stage, &[view], &moment, LightKind::Sun);
         let mut volumes = Volumes::new(&gpu, &stage, VolumeSettings::default()).unwrap();
         let seen = mask(&mut volumes, &Shot::new(&stage, view), &moment, LightKind::Sun).pixels;
@@ -154,8 +154,8 @@ fn v7_open_meshes_cast_from_either_winding() {
     for (name, triangles) in [("quad", quad), ("box without a lid", open_box)] {
         for triangles in [triangles.clone(), flipped(&triangles)] {
             let two_sided = Material { is_double_sided: true, ..opaque() };
-            assert_sun(&format!("v7, {name}"), ground().soup(&triangles).build(), ASLANT);
-            assert_sun(&format!("v7, {name}, two-sided"), ground().soup_of(&triangles, two_sided).build(), ASLANT);
+            assert_sun(&format!("v7, {name}"), ground().soup(&triangles).build(), OBLIQUE_SUN);
+            assert_sun(&format!("v7, {name}, two-sided"), ground().soup_of(&triangles, two_sided).build(), OBLIQUE_SUN);
         }
     }
 }
@@ -170,13 +170,13 @@ fn v8_edges_of_three_and_four_triangles_and_a_moebius_strip() {
         };
         (0..count).map(leaf).collect()
     };
-    assert_sun("v8, three", ground().soup(&fan(3)).build(), ASLANT);
-    assert_sun("v8, four", ground().soup(&fan(4)).build(), ASLANT);
+    assert_sun("v8, three", ground().soup(&fan(3)).build(), OBLIQUE_SUN);
+    assert_sun("v8, four", ground().soup(&fan(4)).build(), OBLIQUE_SUN);
     let cubes = [
         block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.0, 1.2, 0.0)),
         block(Vec3::new(0.0, 0.2, 0.0), Vec3::new(1.0, 1.2, 1.0)),
     ];
-    assert_sun("v8, cubes on an edge", ground().soup(&cubes.concat()).build(), ASLANT);
+    assert_sun("v8, cubes on an edge", ground().soup(&cubes.concat()).build(), OBLIQUE_SUN);
     let strip = |i: u32, side: f32| {
         let around = i as f32 * std::f32::consts::TAU / 24.0;
         let across =
@@ -191,8 +191,8 @@ fn v8_edges_of_three_and_four_triangles_and_a_moebius_strip() {
             [[p, q, r], [p, r, s]]
         })
         .collect();
-    let stage = under_sun(ground().soup_of(&moebius, Material { is_double_sided: true, ..opaque() }).build(), ASLANT);
-    assert_right(&gpu(), "v8, moebius", &stage, &[from_aside(&stage)], &stage.moment(0.5), LightKind::Sun);
+    let stage = under_sun(ground().soup_of(&moebius, Material { is_double_sided: true, ..opaque() }).build(), OBLIQUE_SUN);
+    assert_right(&gpu(), "v8, moebius", &stage, &[oblique_view(&stage)], &stage.moment(0.5), LightKind::Sun);
     let counts = Casters::new(&stage).counts;
     assert_eq!((counts.solid_bodies, counts.open_bodies), (0, 2), "a strip with one side bounds nothing");
 }
@@ -219,7 +219,7 @@ fn v9_coincident_faces_do_not_shade_each_other() {
         ("on the ground", [cube.clone(), sheet].concat()),
         ("on the lid", [cube, fan].concat()),
     ] {
-        assert_sun(&format!("v9, {name}"), ground().soup(&triangles).build(), ASLANT);
+        assert_sun(&format!("v9, {name}"), ground().soup(&triangles).build(), OBLIQUE_SUN);
     }
 }
 
@@ -233,7 +233,7 @@ fn v10_degenerate_triangles_cast_nothing_and_break_nothing() {
         [p, p + Vec3::X * 1e-20, p + Vec3::Z * 1e-20],
     ];
     let cube = block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.5, 1.2, 0.5));
-    assert_sun("v10", ground().soup(&[cube.as_slice(), &degenerate].concat()).build(), ASLANT);
+    assert_sun("v10", ground().soup(&[cube.as_slice(), &degenerate].concat()).build(), OBLIQUE_SUN);
 }
 
 #[test]
@@ -246,8 +246,8 @@ fn v11_t_junctions_do_not_leak() {
     });
     let roof: Vec<_> = large.into_iter().chain(small).collect();
     let two_sided = Material { is_double_sided: true, ..opaque() };
-    let stage = under_sun(ground().soup_of(&roof, two_sided).build(), ASLANT);
-    let views = [from_aside(&stage), view(&stage, DVec3::new(0.2, 0.6, 3.0), DVec3::new(0.0, 0.0, -1.0), [256, 256])];
+    let stage = under_sun(ground().soup_of(&roof, two_sided).build(), OBLIQUE_SUN);
+    let views = [oblique_view(&stage), view(&stage, DVec3::new(0.2, 0.6, 3.0), DVec3::new(0.0, 0.0, -1.0), [256, 256])];
     let found = assert_right(&gpu(), "v11", &stage, &views, &stage.moment(0.5), LightKind::Sun);
     // The corners lie on the edge here, and every prism is closed by itself: rounding leaves gaps in less than one
     // pixel in ten thousand.
@@ -260,12 +260,12 @@ fn v12_a_cube_split_by_materials_and_seams_welds_to_twelve_edges() {
     // Each face is a primitive of a material of its own, under a node of its own, with corners of its own.
     let cube = block(Vec3::new(-1.0, 0.2, -1.0), Vec3::new(0.5, 1.2, 0.5));
     let split = cube.chunks(2).fold(SceneBuilder::new(), |builder, face| builder.soup_of(face, opaque()));
-    let counts = Casters::new(&under_sun(split.build(), ASLANT)).counts;
-    assert_eq!((counts.points, counts.open_edges, counts.crowded_edges), (8, 0, 0));
+    let counts = Casters::new(&under_sun(split.build(), OBLIQUE_SUN)).counts;
+    assert_eq!((counts.points, counts.open_edges, counts.nonmanifold_edges), (8, 0, 0));
     assert_eq!(counts.edges, 12 + 6, "twelve edges, and a diagonal in each of six faces");
     assert_eq!((counts.solid_bodies, counts.open_bodies), (1, 0));
     let split = cube.chunks(2).fold(ground(), |builder, face| builder.soup_of(face, opaque()));
-    assert_sun("v12", split.build(), ASLANT);
+    assert_sun("v12", split.build(), OBLIQUE_SUN);
 }
 
 #[test]
@@ -277,14 +277,14 @@ fn v13_needles_cast_what_they_should() {
     };
     let needles: Vec<_> = (0..9).map(needle).collect();
     let wide = block(Vec3::new(-2.0, 1.0, 0.0), Vec3::new(2.0, 1.0001, 0.02));
-    assert_sun("v13", ground().soup(&[needles, wide].concat()).build(), ASLANT);
+    assert_sun("v13", ground().soup(&[needles, wide].concat()).build(), OBLIQUE_SUN);
 }
 
 #[test]
 fn v17_a_sphere_of_eighty_facets_has_a_clean_terminator() {
     let sphere = moved(&icosphere(1), Vec3::new(0.0, 1.3, 0.0));
     assert_eq!(sphere.len(), 80);
-    for towards in [ASLANT, DVec3::Y, DVec3::new(1.0, 0.2, 0.0)] {
+    for towards in [OBLIQUE_SUN, DVec3::Y, DVec3::new(1.0, 0.2, 0.0)] {
         assert_sun("v17", ground().soup(&sphere).build(), towards);
     }
 }
@@ -299,8 +299,8 @@ fn v18_mirrored_nodes_cast_and_receive_like_others() {
     let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     let sheared =
         DMat4::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 0.4, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -0.5, 1.0]);
-    let stage = under_sun(ground().mesh_of(mesh, opaque(), &[DMat4::IDENTITY, mirror, sheared]).build(), ASLANT);
-    assert_right(&gpu(), "v18", &stage, &[from_aside(&stage)], &stage.moment(0.5), LightKind::Sun);
+    let stage = under_sun(ground().mesh_of(mesh, opaque(), &[DMat4::IDENTITY, mirror, sheared]).build(), OBLIQUE_SUN);
+    assert_right(&gpu(), "v18", &stage, &[oblique_view(&stage)], &stage.moment(0.5), LightKind::Sun);
     let counts = Casters::new(&stage).counts;
-    assert_eq!((counts.solid_bodies, counts.turned_bodies), (6, 0), "mirrored bodies are not inside out");
+    assert_eq!((counts.solid_bodies, counts.inside_out_bodies), (6, 0), "mirrored bodies are not inside out");
 }

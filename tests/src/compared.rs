@@ -13,15 +13,15 @@ use sunbake_runtime::compare::{Comparison, Outcome, Playback, SetOnDisk, Techniq
 use sunbake_runtime::technique::Truth;
 use sunbake_runtime::{Camera, Filter, Stage, View};
 
-/// Ground, a row of posts that cut the day into many intervals, and a block, moved along x by so many metres.
-pub fn posts(aside_m: f32) -> Scene {
+/// Ground, a row of posts that divide the day into many intervals, and a block, all shifted along x.
+pub fn posts(shift_x_m: f32) -> Scene {
     let ground = floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0);
     let post = |i: i32| {
-        let x = i as f32 * 0.5 + aside_m;
+        let x = i as f32 * 0.5 + shift_x_m;
         (Vec3::new(x - 0.09, 0.0, -0.6), Vec3::new(x + 0.09, 1.6, -0.42))
     };
     let builder = (-4..=4).map(post).fold(SceneBuilder::new().soup(&ground), |all, (min, max)| all.block(min, max));
-    builder.block(Vec3::new(1.0 + aside_m, 0.0, 1.2), Vec3::new(2.0 + aside_m, 0.9, 2.0)).build()
+    builder.block(Vec3::new(1.0 + shift_x_m, 0.0, 1.2), Vec3::new(2.0 + shift_x_m, 0.9, 2.0)).build()
 }
 
 /// A midsummer's day at 40 degrees north.

@@ -66,6 +66,7 @@ impl Effect {
             Self::SeveralLayers => "several-layers",
             Self::SixteenBitTimes => "16-bit-times",
             Self::LossMap => "loss-map",
+            // Sets are read by this name: the word is older than the variant's.
             Self::AlphaMask => "alpha-cut",
             Self::DoubleSided => "double-sided",
             Self::AmbientOcclusion => "ambient-occlusion",

@@ -132,13 +132,13 @@ impl AlphaMasks {
 
     #[inline]
     pub fn has_alpha_mask(&self, id: usize) -> bool {
-        self.of_triangle.get(id).is_some_and(|&cut| cut != Self::NONE)
+        self.of_triangle.get(id).is_some_and(|&index| index != Self::NONE)
     }
 
     /// A triangle's mask for closed-form engines, if it has one.
     pub fn view(&self, id: usize) -> Option<MaskedTriangle<'_>> {
-        let &cut = self.of_triangle.get(id)?;
-        let triangle = self.triangles.get(cut as usize)?;
+        let &index = self.of_triangle.get(id)?;
+        let triangle = self.triangles.get(index as usize)?;
         let mask = triangle.mask.map(|mask| &self.textures[mask as usize]);
         let size = mask.map_or(DVec2::ONE, |mask| DVec2::new(f64::from(mask.size[0]), f64::from(mask.size[1])));
         Some(MaskedTriangle {
@@ -154,7 +154,7 @@ impl AlphaMasks {
     pub fn is_solid(&self, id: usize, barycentric: [f64; 2]) -> bool {
         match self.of_triangle.get(id) {
             None | Some(&Self::NONE) => true,
-            Some(&cut) => self.is_solid_at(&self.triangles[cut as usize], barycentric.map(|b| b as f32)),
+            Some(&index) => self.is_solid_at(&self.triangles[index as usize], barycentric.map(|b| b as f32)),
         }
     }
 

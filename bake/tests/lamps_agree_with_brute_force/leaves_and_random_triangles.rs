@@ -4,7 +4,7 @@ use crate::brute_force::{Here, agree};
 use crate::{ground, wall};
 use glam::{DVec3, Mat3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, cut, opaque, pseudo_random};
+use sunbake::testing::{SceneBuilder, block, alpha_masked, opaque, pseudo_random};
 
 /// A wall of leaves: a mask with gaps of one texel and of many.
 fn leaf(builder: SceneBuilder, alpha: impl Fn(u32, u32) -> u8) -> SceneBuilder {
@@ -16,7 +16,7 @@ fn leaf(builder: SceneBuilder, alpha: impl Fn(u32, u32) -> u8) -> SceneBuilder {
     let uvs = positions.iter().map(|p| Vec2::new(p.x * 0.4 + 0.03 * p.y, 0.37 * p.y)).collect();
     let indices = (0..positions.len() as u32).collect();
     let mesh = Mesh { positions, texcoords: [Some(uvs), None], indices, ..Mesh::default() };
-    builder.mesh_of(mesh, cut(texture), &[glam::DMat4::IDENTITY])
+    builder.mesh_of(mesh, alpha_masked(texture), &[glam::DMat4::IDENTITY])
 }
 
 #[test]

@@ -7,13 +7,13 @@
 use crate::stage::Stage;
 use std::collections::BTreeMap;
 
-/// Cosine between a level plane's normal and the vertical.
-const LEVEL: f64 = 0.999_9;
+/// Least cosine between the normal of a level triangle and the vertical.
+const LEAST_LEVEL_COS: f64 = 0.999_9;
 /// Least area of the ground, as a share of the largest level plane's area.
-const AS_LARGE: f64 = 0.25;
+const LEAST_AREA_SHARE: f64 = 0.25;
 /// Distance from a plane within which points count as lying in it, as a share of the scene's size: as far as rounding
 /// moves them.
-const FLAT: f64 = 1e-6;
+const PLANE_TOLERANCE_SHARE: f64 = 1e-6;
 
 /// The ground of a stage.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,10 +33,10 @@ impl Ground {
     /// The ground of a stage.
     pub fn new(stage: &Stage) -> Self {
         let triangles = &stage.geometry.triangles;
-        let flat_m = FLAT * stage.scene.half_extent_m.max_element().max(1e-30);
+        let tolerance_m = PLANE_TOLERANCE_SHARE * stage.scene.half_extent_m.max_element().max(1e-30);
         let is_level = |i: usize| {
             let (up, sides) = (stage.geometry.normal(i).y, stage.sides(i));
-            (up > LEVEL && sides.front) || (up < -LEVEL && sides.back)
+            (up > LEAST_LEVEL_COS && sides.front) || (up < -LEAST_LEVEL_COS && sides.back)
         };
         let height_of = |i: usize| triangles[i].iter().map(|p| f64::from(p.y)).sum::<f64>() / 3.0;
         // Planes are grouped by heights rounded to that distance. One plane may fall into two groups; the larger one
@@ -44,20 +44,20 @@ impl Ground {
         let mut areas: BTreeMap<i64, (f64, f64)> = BTreeMap::new();
         for i in (0..triangles.len()).filter(|&i| is_level(i)) {
             let [a, b, c] = triangles[i].map(|p| p.as_dvec3());
-            let area = areas.entry((height_of(i) / (4.0 * flat_m)).round() as i64).or_default();
+            let area = areas.entry((height_of(i) / (4.0 * tolerance_m)).round() as i64).or_default();
             *area = (area.0 + (b - a).cross(c - a).length(), height_of(i));
         }
         // The lowest of the large planes: a roof may be larger than the ground.
         let largest = areas.values().map(|(area, _)| *area).fold(0.0, f64::max);
-        let Some(&(_, height_m)) = areas.values().find(|(area, _)| *area >= AS_LARGE * largest) else {
+        let Some(&(_, height_m)) = areas.values().find(|(area, _)| *area >= LEAST_AREA_SHARE * largest) else {
             return Self::default();
         };
-        let in_plane = |p: &glam::Vec3| (f64::from(p.y) - height_m).abs() <= 4.0 * flat_m;
+        let in_plane = |p: &glam::Vec3| (f64::from(p.y) - height_m).abs() <= 4.0 * tolerance_m;
         let holds = (0..triangles.len()).map(|i| is_level(i) && triangles[i].iter().all(in_plane)).collect();
-        let is_below = |p: &glam::Vec3| f64::from(p.y) < height_m - 4.0 * flat_m;
+        let is_below = |p: &glam::Vec3| f64::from(p.y) < height_m - 4.0 * tolerance_m;
         let is_there = |i: &usize| !stage.sides(*i).is_none();
         let casts = (0..triangles.len()).filter(is_there).any(|i| triangles[i].iter().any(is_below));
-        Self { height_m: Some(height_m), casts_from_m: height_m + 4.0 * flat_m, holds, casts }
+        Self { height_m: Some(height_m), casts_from_m: height_m + 4.0 * tolerance_m, holds, casts }
     }
 
     /// Whether a triangle lies in the plane.

@@ -36,7 +36,7 @@ impl MapRequest<'_> {
         let [x, y, w] = [rows.x_axis, rows.y_axis, rows.w_axis];
         let near = w - DVec4::W * f64::from(self.view.near_m());
         let planes = [w + x, w - x, w + y, w - y, near];
-        planes.iter().fold(Polyhedron::of_box(self.receiver_box_m), |body, plane| body.cut(about_eye(*plane)))
+        planes.iter().fold(Polyhedron::of_box(self.receiver_box_m), |body, plane| body.clipped_by(about_eye(*plane)))
     }
 
     /// The sampled points that are in view.
@@ -54,8 +54,8 @@ impl MapRequest<'_> {
         self.samples_m.iter().filter(is_in_view).copied().collect()
     }
 
-    /// The mean logarithm of the texels' size in pixels, over points in view. Less is better.
-    pub fn score(&self, maps: &[MapProjection], samples_m: &[DVec3]) -> f64 {
+    /// The mean logarithm of the texels' size in pixels, over points in view. Smaller is better.
+    pub fn mean_log_texel_px(&self, maps: &[MapProjection], samples_m: &[DVec3]) -> f64 {
         let eye_m = self.view.eye_m.as_dvec3();
         let of_sample = |p: &DVec3| {
             let pixel_m = p.distance(eye_m) * f64::from(self.view.pixel_angle_rad);

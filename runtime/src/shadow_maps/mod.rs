@@ -234,9 +234,9 @@ impl MapSettings {
                 let mut bounds = extents.shaded(near);
                 if let (Variant::Pcss, Some(bounds)) = (self.variant, &mut bounds) {
                     // Penumbras reach beyond what lies under a caster.
-                    let aside_m = bounds.size().z * sun_radius_rad.tan();
-                    bounds.low -= DVec3::new(aside_m, aside_m, 0.0);
-                    bounds.high += DVec3::new(aside_m, aside_m, 0.0);
+                    let penumbra_m = bounds.size().z * sun_radius_rad.tan();
+                    bounds.low -= DVec3::new(penumbra_m, penumbra_m, 0.0);
+                    bounds.high += DVec3::new(penumbra_m, penumbra_m, 0.0);
                 }
                 let map = |b| MapProjection::orthographic(extents.axes, &b, size_texels, margin_texels);
                 bounds.map(map).into_iter().collect()

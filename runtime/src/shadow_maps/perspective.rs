@@ -47,16 +47,16 @@ pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection
     for warp in warps(request, &region) {
         let maps =
             if is_cube { warp.cube(request, &region) } else { warp.single(request, &region).into_iter().collect() };
-        let score = request.score(&maps, &samples);
-        if !maps.is_empty() && best.as_ref().is_none_or(|(least, _)| score < *least) {
-            best = Some((score, maps));
+        let log_texel_px = request.mean_log_texel_px(&maps, &samples);
+        if !maps.is_empty() && best.as_ref().is_none_or(|(least, _)| log_texel_px < *least) {
+            best = Some((log_texel_px, maps));
         }
     }
     let orthographic =
         MapProjection::orthographic(request.extents.axes, &shaded, request.size_texels, request.margin_texels);
     // Without a gain the orthographic map is used.
     match best {
-        Some((score, maps)) if score <= request.score(std::slice::from_ref(&orthographic), &samples) => maps,
+        Some((log_texel_px, maps)) if log_texel_px <= request.mean_log_texel_px(std::slice::from_ref(&orthographic), &samples) => maps,
         _ => vec![orthographic],
     }
 }

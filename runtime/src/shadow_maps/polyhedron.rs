@@ -1,5 +1,5 @@
-//! A convex body as its faces, cut by planes one after the other (Sutherland and Hodgman, "Reentrant polygon clipping",
-//! *CACM* 17, 1974, face by face, and a new face where the plane cuts).
+//! A convex body as its faces, clipped by planes one after the other (Sutherland and Hodgman, "Reentrant polygon
+//! clipping", *CACM* 17, 1974, face by face, and a new face where the plane cuts).
 
 use glam::{DVec3, DVec4, Vec4Swizzles};
 
@@ -21,7 +21,7 @@ impl Polyhedron {
     }
 
     /// The part where `plane . (point, 1) >= 0`.
-    pub fn cut(&self, plane: DVec4) -> Self {
+    pub fn clipped_by(&self, plane: DVec4) -> Self {
         let height = |p: DVec3| plane.truncate().dot(p) + plane.w;
         let mut cap: Vec<DVec3> = Vec::new();
         let mut faces = Vec::new();
@@ -79,21 +79,21 @@ mod tests {
 
     #[test]
     fn cuts_keep_the_positive_side_of_their_planes() {
-        let corner = cube().cut(DVec4::new(-1.0, -1.0, -1.0, 1.0));
+        let corner = cube().clipped_by(DVec4::new(-1.0, -1.0, -1.0, 1.0));
         let found: Vec<DVec3> = corner.corners().collect();
         for expected in [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z] {
             assert!(found.iter().any(|p| p.distance(expected) < 1e-12), "{expected}");
         }
         assert!(found.iter().all(|p| p.element_sum() < 1.0 + 1e-12));
-        // A second cut goes through the face that the first one made.
-        let slice = corner.cut(DVec4::new(1.0, 0.0, 0.0, -0.25));
+        // A second plane goes through the face that the first one made.
+        let slice = corner.clipped_by(DVec4::new(1.0, 0.0, 0.0, -0.25));
         let tip = DVec3::new(0.25, 0.75, 0.0);
         assert!(slice.corners().all(|p| p.x > 0.25 - 1e-12) && slice.corners().any(|p| p.distance(tip) < 1e-12));
     }
 
     #[test]
     fn planes_that_miss_leave_all_or_nothing() {
-        assert_eq!(cube().cut(DVec4::new(1.0, 0.0, 0.0, 5.0)), cube());
-        assert!(cube().cut(DVec4::new(1.0, 0.0, 0.0, -5.0)).is_empty());
+        assert_eq!(cube().clipped_by(DVec4::new(1.0, 0.0, 0.0, 5.0)), cube());
+        assert!(cube().clipped_by(DVec4::new(1.0, 0.0, 0.0, -5.0)).is_empty());
     }
 }

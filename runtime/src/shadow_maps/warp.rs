@@ -12,7 +12,7 @@ const TURNS: [f64; 3] = [0.0, 0.4, 0.7];
 /// Least `w` of a corner that is fitted, as a share of the greatest.
 const LEAST_W: f64 = 1e-3;
 /// Least `l.w` for which the sun counts as a point. Below it the sun stands across the view, and a cube is one map.
-const ACROSS: f64 = 1e-5;
+const LEAST_POINT_SUN_W: f64 = 1e-5;
 
 /// The space of a virtual camera, and an axis in it along which a map looks.
 pub(super) struct Warp {
@@ -50,7 +50,7 @@ impl Warp {
         let middle = 0.5 * (low + high);
         let axis = |turn: f64| {
             // For a sun across the view there is only one axis.
-            let straight = if l.w.abs() > ACROSS { DVec3::new(l.x / l.w, l.y / l.w, middle.z) } else { middle };
+            let straight = if l.w.abs() > LEAST_POINT_SUN_W { DVec3::new(l.x / l.w, l.y / l.w, middle.z) } else { middle };
             Self::with_axis(eye_m, towards, q, l, middle.lerp(straight, turn))
         };
         TURNS.into_iter().filter_map(axis).collect()
@@ -82,7 +82,7 @@ impl Warp {
 
     /// The faces of a cube around the sun that see some of the region.
     pub fn cube(&self, request: &MapRequest<'_>, region: &Polyhedron) -> Vec<MapProjection> {
-        if self.l.w.abs() < ACROSS {
+        if self.l.w.abs() < LEAST_POINT_SUN_W {
             return self.single(request, region).into_iter().collect();
         }
         let [a, b, c] = [self.frame.x_axis, self.frame.y_axis, self.frame.z_axis];
@@ -91,7 +91,7 @@ impl Warp {
         for [across, up, axis] in faces {
             let rows @ [x, y, w] = [self.away(across), self.away(up), self.away(axis)];
             let sides = [w + x, w - x, w + y, w - y].map(|side| self.about_eye(side));
-            let part = sides.iter().fold(region.clone(), |body, plane| body.cut(*plane));
+            let part = sides.iter().fold(region.clone(), |body, plane| body.clipped_by(*plane));
             if part.is_empty() {
                 continue;
             }

@@ -95,11 +95,11 @@ impl Technique for Volumes<'_> {
                  edges, {} edges of three triangles or more",
                 casters.triangles,
                 casters.casters,
-                casters.solid_bodies + casters.turned_bodies,
-                casters.turned_bodies,
+                casters.solid_bodies + casters.inside_out_bodies,
+                casters.inside_out_bodies,
                 casters.open_bodies,
                 casters.open_edges,
-                casters.crowded_edges
+                casters.nonmanifold_edges
             ),
             format!(
                 "solid bodies extrude silhouettes of what faces the light, open ones of every triangle, and {} \
@@ -107,10 +107,10 @@ impl Technique for Volumes<'_> {
                 casters.soups
             ),
         ];
-        if casters.cut_triangles > 0 {
+        if casters.alpha_masked_triangles > 0 {
             lines.push(format!(
                 "{} triangles have alpha masks: volumes do not see them, and the whole triangles cast",
-                casters.cut_triangles
+                casters.alpha_masked_triangles
             ));
         }
         for light in &self.renderer.report().lights {

@@ -22,15 +22,15 @@ pub fn gpu() -> Gpu {
 }
 
 /// A direction to the sun that is along no axis and no diagonal.
-pub const ASLANT: DVec3 = DVec3::new(0.53, 0.62, 0.31);
+pub const OBLIQUE_SUN: DVec3 = DVec3::new(0.53, 0.62, 0.31);
 
 /// Level ground, twelve metres wide.
 pub fn ground() -> SceneBuilder {
     SceneBuilder::new().soup(&floor(Vec2::splat(-6.0), Vec2::splat(6.0), 0.0))
 }
 
-/// A view of the ground from above and aside, 128 by 128 pixels.
-pub fn from_aside(stage: &Stage) -> View {
+/// A view of the ground from above at a slant, 128 by 128 pixels.
+pub fn oblique_view(stage: &Stage) -> View {
     view(stage, DVec3::new(4.1, 3.7, 5.3), DVec3::new(0.1, 0.4, -0.2), [128, 128])
 }
 

@@ -1,8 +1,8 @@
 //! Casters: groups of bodies, each large enough to be worth a culling decision and a draw of its own.
 //!
 //! A caster's points, triangles and edges are contiguous, so that a frame leaves a caster out by skipping a range.
-//! Bodies of one instance stay together up to [`MOST_TRIANGLES`]; larger instances are cut along a Morton curve. A body
-//! that spans much of the scene, such as its ground, is a caster alone.
+//! Bodies of one instance stay together up to [`MOST_TRIANGLES`]; larger instances are split along a Morton curve. A
+//! body that spans much of the scene, such as its ground, is a caster alone.
 
 use super::bodies::{Bodies, Shape, cross};
 use super::weld::{EdgeUse, Welded};
@@ -13,13 +13,13 @@ use serde::Serialize;
 use std::ops::Range;
 use sunbake::scene::Alpha;
 
-/// Triangles of a caster beyond which its instance is cut into several.
+/// Triangles of a caster beyond which its instance is split into several.
 const MOST_TRIANGLES: usize = 1024;
 /// Share of the scene's size beyond which a body is a caster alone.
-const LARGE: f64 = 0.25;
+const OWN_CASTER_SHARE: f64 = 0.25;
 /// Distance from a caster's plane within which points count as lying on it, as a share of the caster's size: as far as
 /// rounding to `f32` moves them.
-pub const FLAT: f64 = 3e-7;
+pub const PLANE_TOLERANCE_SHARE: f64 = 3e-7;
 
 /// Everything that casts shadows, welded and sorted by caster.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,12 +64,13 @@ pub struct Caster {
 /// Counts of what casts shadows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct CasterCounts {
-    /// Triangles.
+    /// Triangles that block light, alpha-masked ones included.
     pub triangles: usize,
     /// Of these, those that bound solids.
     pub solid_triangles: usize,
     /// Of these, those with an alpha mask. Their whole cards cast.
-    pub cut_triangles: usize,
+    #[serde(rename = "cut_triangles")]
+    pub alpha_masked_triangles: usize,
     /// Points after welding.
     pub points: usize,
     /// Edges after welding.
@@ -77,14 +78,16 @@ pub struct CasterCounts {
     /// Edges of one triangle.
     pub open_edges: usize,
     /// Edges of three triangles or more.
-    pub crowded_edges: usize,
+    #[serde(rename = "crowded_edges")]
+    pub nonmanifold_edges: usize,
     /// Bodies that bound solids.
     pub solid_bodies: usize,
     /// Bodies that bound solids inside out, and were turned over.
-    pub turned_bodies: usize,
+    #[serde(rename = "turned_bodies")]
+    pub inside_out_bodies: usize,
     /// Bodies that do not bound solids.
     pub open_bodies: usize,
-    /// Casters.
+    /// Casters, which a frame draws or leaves out as a whole.
     pub casters: usize,
     /// Of these, those that share few edges.
     pub soups: usize,
@@ -152,7 +155,7 @@ fn group(stage: &Stage, bodies: &Bodies, corners_m: &[[Vec3; 3]], flat: &[u32]) 
     let half_m = stage.scene.half_extent_m.max_element().max(f64::MIN_POSITIVE);
     let key = |body: usize| {
         let [low, high] = bounds[body].map(|corner| corner.as_dvec3());
-        let is_large = (high - low).max_element() > LARGE * 2.0 * half_m;
+        let is_large = (high - low).max_element() > OWN_CASTER_SHARE * 2.0 * half_m;
         OrderKey {
             instance: instance[body],
             is_open: bodies.shapes[body] == Shape::Open,
@@ -188,20 +191,20 @@ fn morton(point: DVec3) -> u32 {
 }
 
 fn count(stage: &Stage, welded: &Welded, bodies: &Bodies, flat: &[u32]) -> CasterCounts {
-    let is_cut = |&&i: &&u32| has_alpha_mask(stage, i as usize);
+    let is_alpha_masked = |&&i: &&u32| has_alpha_mask(stage, i as usize);
     let edges =
         |is_wanted: fn(usize) -> bool| (0..welded.edges.len()).filter(|&e| is_wanted(welded.uses_of(e).len())).count();
     let of_shape = |shape: Shape| bodies.shapes.iter().filter(|&&s| s == shape).count();
     CasterCounts {
         triangles: flat.len(),
         solid_triangles: bodies.of_triangle.iter().filter(|&&b| bodies.shapes[b as usize] != Shape::Open).count(),
-        cut_triangles: flat.iter().filter(is_cut).count(),
+        alpha_masked_triangles: flat.iter().filter(is_alpha_masked).count(),
         points: welded.points_m.len(),
         edges: welded.edges.len(),
         open_edges: edges(|uses| uses == 1),
-        crowded_edges: edges(|uses| uses > 2),
+        nonmanifold_edges: edges(|uses| uses > 2),
         solid_bodies: of_shape(Shape::Solid),
-        turned_bodies: of_shape(Shape::InsideOut),
+        inside_out_bodies: of_shape(Shape::InsideOut),
         open_bodies: of_shape(Shape::Open),
         casters: 0,
         soups: 0,
@@ -238,7 +241,7 @@ fn arrange(
         counts: CasterCounts { casters: count, ..counts },
     };
     let (mut next, mut next_edge) = (0, 0);
-    // Points are numbered anew within each caster; those of two casters that touch are there twice.
+    // Points are numbered again within each caster; those of two casters that touch are there twice.
     let mut new_point = vec![(u32::MAX, 0u32); welded.points_m.len()];
     for caster in 0..count as u32 {
         let (first, first_edge) = (next, next_edge);
@@ -342,7 +345,7 @@ fn bounds_and_plane(casters: &Casters, triangles: Range<usize>) -> ([DVec3; 2], 
         }
     }
     let normal = widest.normalize_or_zero();
-    let tolerance_m = FLAT * (bounds[1] - bounds[0]).max_element();
+    let tolerance_m = PLANE_TOLERANCE_SHARE * (bounds[1] - bounds[0]).max_element();
     let is_flat = corners().all(|t| t.iter().all(|corner| (*corner - on_plane).dot(normal).abs() <= tolerance_m));
     (bounds, (is_flat && normal != DVec3::ZERO).then(|| (normal, normal.dot(on_plane))))
 }

@@ -10,7 +10,7 @@
 //! A caster can also do without caps (z-pass) where the eye is surely outside of its volume. That is so where the
 //! caster does not reach into the *occlusion pyramid*, the convex hull of the view's near rectangle and the light.
 
-use super::casters::{Caster, Casters, FLAT};
+use super::casters::{Caster, Casters, PLANE_TOLERANCE_SHARE};
 use super::light::Light;
 use crate::View;
 use crate::stage::Stage;
@@ -280,5 +280,5 @@ fn is_in_front_of_plane(caster: &Caster, bounds: &Aabb, light: &Light) -> bool {
     };
     let size_m = (caster.bounds_m[1] - caster.bounds_m[0]).max_element();
     let height_m = |corner: &DVec3| (corner.dot(normal) - offset_m) * side.signum();
-    side != 0.0 && corners(bounds).iter().all(|corner| height_m(corner) >= -FLAT * size_m)
+    side != 0.0 && corners(bounds).iter().all(|corner| height_m(corner) >= -PLANE_TOLERANCE_SHARE * size_m)
 }

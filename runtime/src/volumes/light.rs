@@ -68,14 +68,14 @@ impl Light {
             }
     }
 
-    /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; `spares`
-    /// leaves them out. Triangles that are edge on have no prism.
-    pub fn facings(&self, casters: &Casters, spares: bool) -> Facings {
+    /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; with
+    /// `omits_back_faces_of_solids` they are left out. Triangles that are edge on have no prism.
+    pub fn facings(&self, casters: &Casters, omits_back_faces_of_solids: bool) -> Facings {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
         let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
             caster.triangles.clone().into_par_iter().with_min_len(1024).map(move |triangle| {
                 let front = self.front(&casters.corners_m(triangle));
-                i8::from(front > 0.0) - i8::from(front < 0.0 && !(spares && is_solid))
+                i8::from(front > 0.0) - i8::from(front < 0.0 && !(omits_back_faces_of_solids && is_solid))
             })
         };
         let of_triangle = casters.all.par_iter().zip(&is_solid).flat_map(of_caster).collect();

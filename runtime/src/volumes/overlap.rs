@@ -1,9 +1,9 @@
 //! How many prisms may contain one point. Eight bits of stencil count to 255, and 256 would read as lit.
 //!
 //! Seen from the light, a prism is its triangle, and the number of triangles at one spot bounds the count at any pixel.
-//! The light's view is cut in two, again and again, until few enough triangles reach into a cell, or the cell is so
-//! small that more cuts do not separate them. The sun's view is a plane. A lamp's view is the sphere around it, cut as
-//! a cube, where a triangle is a cone of three planes through the lamp. The bound may be too high, never too low.
+//! The light's view is split in two, again and again, until few enough triangles reach into a cell, or the cell is so
+//! small that more splits do not separate them. The sun's view is a plane. A lamp's view is the sphere around it, split
+//! as a cube, where a triangle is a cone of three planes through the lamp. The bound may be too high, never too low.
 
 use super::casters::Casters;
 use super::light::Light;
@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Cuts after which triangles in one cell count as overlapping.
+/// Splits after which triangles in one cell count as overlapping.
 const DEEPEST: u32 = 48;
 /// How many triangles a median is estimated from.
 const SAMPLE: usize = 63;
@@ -29,7 +29,7 @@ struct TrianglesInLightView {
     bounds: Vec<CellBounds>,
 }
 
-/// Cuts the casting triangles into a few runs, none of which has more than `most` prisms at one spot.
+/// Splits the casting triangles into a few runs, none of which has more than `most` prisms at one spot.
 pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
     let casting = facings.iter().filter(|&&facing| facing != 0).count();
     if casting <= most {
@@ -42,23 +42,23 @@ pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Ve
     };
     let (corners, bounds) = (0..facings.len()).into_par_iter().map(seen).unzip();
     let mut found = Vec::new();
-    TrianglesInLightView { view, corners, bounds }.cut(0..facings.len(), most, &mut found);
+    TrianglesInLightView { view, corners, bounds }.split(0..facings.len(), most, &mut found);
     found
 }
 
 impl TrianglesInLightView {
-    fn cut(&self, run: Range<usize>, most: usize, found: &mut Vec<Range<usize>>) {
+    fn split(&self, run: Range<usize>, most: usize, found: &mut Vec<Range<usize>>) {
         let casting: Vec<u32> = run.clone().filter(|&i| self.bounds[i][0].x.is_finite()).map(|i| i as u32).collect();
         if casting.len() <= most || !self.exceeds(&casting, self.view.space(), most, 0) {
             return found.push(run);
         }
         let middle = run.start + run.len() / 2;
-        self.cut(run.start..middle, most, found);
-        self.cut(middle..run.end, most, found);
+        self.split(run.start..middle, most, found);
+        self.split(middle..run.end, most, found);
     }
 
-    /// Where to cut a cell: at the median of the middles of the triangles' parts in it, estimated from a sample. Cells
-    /// become small where a scene is dense, and a wide plain costs no cuts.
+    /// Where to split a cell: at the median of the middles of the triangles' parts in it, estimated from a sample.
+    /// Cells become small where a scene is dense, and a wide plain costs no cuts.
     fn middle(&self, of: &[u32], cell: &CellBounds, axis: usize) -> f32 {
         let middle = |&i: &u32| {
             let [low, high] = &self.bounds[i as usize];

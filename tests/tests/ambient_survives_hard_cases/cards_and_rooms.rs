@@ -6,7 +6,7 @@ use sunbake::ambient::AmbientSettings;
 use sunbake::atlas::Density;
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::settings::{AmbientRequest, BakeSettings};
-use sunbake::testing::{SceneBuilder, block, cut, floor, opaque};
+use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, opaque};
 use sunbake::texels::Texel;
 use sunbake_tests::ambient::{ambient_visibility, flat, rays, share_of_polygon};
 use sunbake_tests::{Traced, flipped};
@@ -19,7 +19,7 @@ fn leaf(cutoff: f32) -> Traced {
     let positions: Vec<Vec3> = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0).into_iter().flatten().collect();
     let uvs = positions.iter().map(|p| Vec2::new(0.5 * (p.x + 1.0), 0.5 * (p.z + 1.0))).collect();
     let mesh = Mesh { indices: (0..6).collect(), positions, texcoords: [Some(uvs), None], ..Mesh::default() };
-    let material = Material { alpha: Alpha::Mask { cutoff }, ..cut(texture) };
+    let material = Material { alpha: Alpha::Mask { cutoff }, ..alpha_masked(texture) };
     Traced::new(builder.mesh_of(mesh, material, &[DMat4::IDENTITY]).build())
 }
 

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
 use sunbake::sun::SunArc;
-use sunbake::testing::{SceneBuilder, block, cut, floor};
+use sunbake::testing::{SceneBuilder, block, alpha_masked, floor};
 use sunbake::visibility::{BisectEngine, IntervalTable, Intervals, lit_at};
 use sunbake_tests::engines::{ALL, BISECT, Candidate, EXACT, RAYS, SUNS, all_must_agree};
 use sunbake_tests::paths::{Random, day_at, keyed};
@@ -29,7 +29,7 @@ fn under_a_leaf(seed: u64, wrap: Wrap) -> Traced {
     };
     let texture =
         TextureRef { image, texcoord: 0, image_from_texcoord: glam::Mat3::IDENTITY, wrap: [wrap, Wrap::Repeat] };
-    Traced::new(builder.mesh_of(leaf, cut(texture), &[DMat4::IDENTITY]).build())
+    Traced::new(builder.mesh_of(leaf, alpha_masked(texture), &[DMat4::IDENTITY]).build())
 }
 
 /// B13: edges lie where the mask's texels end.
@@ -151,7 +151,7 @@ fn a_clipped_corner_of_a_masks_texel_is_found() {
         ..Mesh::default()
     };
     let texture = TextureRef { image, texcoord: 0, image_from_texcoord: glam::Mat3::IDENTITY, wrap: [Wrap::Clamp; 2] };
-    let here = Traced::new(builder.mesh_of(leaf, cut(texture), &[DMat4::IDENTITY]).build());
+    let here = Traced::new(builder.mesh_of(leaf, alpha_masked(texture), &[DMat4::IDENTITY]).build());
     let path = over_the_top(DVec3::X);
     for into_m in [1e-2, 1e-3, 1e-4, 1e-5] {
         let mut point = here.point_at(DVec3::new(0.0, 0.0, into_m), FLOOR);
