@@ -159,11 +159,11 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
     };
     let within = entry.distance_m.map_or(String::new(), |m| format!(", within {m} m"));
     let speed = millions / seconds.max(1e-9);
-    let unsettled = match entry.unsettled_texels {
+    let unconverged = match entry.unconverged_texels {
         0 => String::new(),
         count => format!(", {count} not to that error"),
     };
-    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unsettled}", entry.buried_texels)
+    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unconverged}", entry.buried_texels)
 }
 
 fn seams(entry: &SeamEntry) -> String {
