@@ -25,14 +25,14 @@ pub struct BakeSettings {
     /// Width in texels of the gutter around every chart, which repeats the chart's border, 1 to 16. A four-texel filter
     /// needs 1; each mip level below needs twice as many as the one above.
     pub padding_texels: u32,
-    /// Bits of a stored time. 8 bits know an edge to 1.7 minutes of a summer day, 16 bits to 0.4 seconds, at twice the
-    /// bytes.
+    /// Bits of a stored time. 8 bits store edges to within 1.7 minutes of a summer day, 16 bits to within 0.4 seconds,
+    /// at twice the bytes.
     pub bits: Bits,
     /// Most layers of four intervals, 1 to 16. A texel with more intervals keeps the list that is wrong for the
     /// shortest time. Layers that no texel needs are not written.
     pub layer_cap: usize,
-    /// Lanes across the sun's disc: 1, as the chapter has it, 3 or 5. With one lane, edges along the sun's path are
-    /// hard; with more they soften in as many steps. Maps, and the reads of playback, grow with the number. A light
+    /// Lanes across the sun's disc: 1 (as in *GPU Gems* chapter 13), 3 or 5. With one lane, edges along the sun's path
+    /// are hard; with more they soften in as many steps. Maps, and the reads of playback, grow with the number. A light
     /// without width always has one lane.
     pub lane_count: usize,
     /// Whether times of the sun and the lamp are baked.

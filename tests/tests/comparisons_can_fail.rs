@@ -11,9 +11,9 @@ type Texels = ImageBuffer<Rgba<u16>, Vec<u16>>;
 
 /// Asserts that a defect raises a set's mean error at least so many times.
 fn assert_caught(defect: &str, least: f64, spoil: impl Fn(&Path)) {
-    let desk = tempfile::tempdir().unwrap();
-    bake_into(desk.path(), "set", &posts(0.0), |settings| settings);
-    let set = desk.path().join("set");
+    let folder = tempfile::tempdir().unwrap();
+    bake_into(folder.path(), "set", &posts(0.0), |settings| settings);
+    let set = folder.path().join("set");
     let sound = mean_error(&set);
     spoil(&set);
     let broken = mean_error(&set);
@@ -75,10 +75,10 @@ fn a_layer_that_is_off_by_one_is_caught() {
 
 #[test]
 fn a_stale_set_is_refused_with_both_hashes_and_caught_without_them() {
-    let desk = tempfile::tempdir().unwrap();
-    bake_into(desk.path(), "old", &posts(0.0), |settings| settings);
-    bake_into(desk.path(), "new", &posts(0.2), |settings| settings);
-    let [old, new] = ["old", "new"].map(|name| desk.path().join(name));
+    let folder = tempfile::tempdir().unwrap();
+    bake_into(folder.path(), "old", &posts(0.0), |settings| settings);
+    bake_into(folder.path(), "new", &posts(0.2), |settings| settings);
+    let [old, new] = ["old", "new"].map(|name| folder.path().join(name));
     let sound = mean_error(&old);
     std::fs::copy(new.join("scene.glb"), old.join("scene.glb")).unwrap();
     let (found, baked) = match Stage::read(&old) {
@@ -100,9 +100,9 @@ fn a_stale_set_is_refused_with_both_hashes_and_caught_without_them() {
 
 #[test]
 fn one_corrupted_texel_is_caught_by_comparing_with_the_sound_set() {
-    let desk = tempfile::tempdir().unwrap();
-    bake_into(desk.path(), "set", &posts(0.0), |settings| settings);
-    let set = desk.path().join("set");
+    let folder = tempfile::tempdir().unwrap();
+    bake_into(folder.path(), "set", &posts(0.0), |settings| settings);
+    let set = folder.path().join("set");
     let sound = compared(&set, &[PLAYED], TRUE);
     // A texel of the ground that the second camera looks at.
     let stage = Stage::read(&set).unwrap();
@@ -127,9 +127,9 @@ fn one_corrupted_texel_is_caught_by_comparing_with_the_sound_set() {
 
 #[test]
 fn a_set_compared_with_itself_has_no_error_and_two_runs_agree() {
-    let desk = tempfile::tempdir().unwrap();
-    bake_into(desk.path(), "set", &posts(0.0), |settings| settings);
-    let set = desk.path().join("set");
+    let folder = tempfile::tempdir().unwrap();
+    bake_into(folder.path(), "set", &posts(0.0), |settings| settings);
+    let set = folder.path().join("set");
     for one in [PLAYED, TRUE] {
         let outcome = compared(&set, &[one], one);
         for error in outcome.techniques[0].frames.iter().map(|frame| frame.error).chain([outcome.techniques[0].error]) {
@@ -151,13 +151,13 @@ fn a_set_compared_with_itself_has_no_error_and_two_runs_agree() {
 
 #[test]
 fn lanes_and_bits_made_of_a_set_are_those_that_a_bake_makes() {
-    let desk = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
     let scene = posts(0.0);
-    bake_into(desk.path(), "three", &scene, |settings| sunbake::settings::BakeSettings { lane_count: 3, ..settings });
-    bake_into(desk.path(), "one", &scene, |settings| settings);
+    bake_into(folder.path(), "three", &scene, |settings| sunbake::settings::BakeSettings { lane_count: 3, ..settings });
+    bake_into(folder.path(), "one", &scene, |settings| settings);
     let bits = sunbake::maps::Bits::Eight;
-    bake_into(desk.path(), "eight", &scene, |settings| sunbake::settings::BakeSettings { bits, ..settings });
-    let stage = |name: &str| Stage::read(&desk.path().join(name)).unwrap();
+    bake_into(folder.path(), "eight", &scene, |settings| sunbake::settings::BakeSettings { bits, ..settings });
+    let stage = |name: &str| Stage::read(&folder.path().join(name)).unwrap();
     let [middle, one] = [stage("three").with_one_lane(), stage("one")];
     assert_eq!(middle.pages[0].lanes, one.pages[0].lanes);
     let [made, baked] = [one.with_eight_bits(), stage("eight")];

@@ -106,16 +106,16 @@ fn settings() -> CostSettings {
 
 /// Errors of a small bake at 300 points, from its files and from the texels around the points.
 fn both_ways(scene: &Scene, lane_count: usize) -> [playback::PlaybackErrors; 2] {
-    let desk = tempfile::tempdir().unwrap();
-    let file = file(scene, desk.path());
+    let folder = tempfile::tempdir().unwrap();
+    let file = file(scene, folder.path());
     let settings = settings();
     let budget = Budget::new(settings.budget_s, &Silent);
     let workload = Workload::new(&file, &settings, &budget).unwrap();
     let truth = GroundTruth::find(&workload, 300, &budget).unwrap();
     let standard = settings.preset(BakeSettings::standard);
     let asked = BakeSettings { page_size_texels: 64, lane_count, ..standard };
-    bake(&file, &desk.path().join("set"), false, &asked, &Silent).unwrap();
-    let set = disk::read::read(&desk.path().join("set")).unwrap();
+    bake(&file, &folder.path().join("set"), false, &asked, &Silent).unwrap();
+    let set = disk::read::read(&folder.path().join("set")).unwrap();
     let whole = playback::errors(&set, &truth, workload.scene()).unwrap();
     let sampled = sparse_bake(&workload, &truth, &asked, &budget).unwrap().unwrap();
     assert_eq!(sampled.texels, set.manifest.stats.texels);

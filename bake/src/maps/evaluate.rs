@@ -1,8 +1,8 @@
 //! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in
 //! `shaders/src/wgsl/baked`, with the same names in the same order.
 //!
-//! While the sun's disc crosses a shadow's edge it is approximated by a line along its path (the chapter's linear
-//! light): `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`, w being the sun's width in t.
+//! While the sun's disc crosses a shadow's edge it is approximated by a line along its path (linear light). With w the
+//! sun's width in t, `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`.
 
 use super::{Bits, LayerMaps};
 

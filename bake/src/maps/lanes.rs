@@ -1,7 +1,7 @@
-//! Lanes: the sun's disc as a few lines along its path. One line is the chapter's linear light. With it, edges that run
-//! along the path stay hard, since the whole line crosses them at once.
+//! Lanes: the sun's disc as a few lines along its path. One line is the linear light of *GPU Gems* chapter 13. With it,
+//! edges that run along the path stay hard, since the whole line crosses them at once.
 //!
-//! Theory: cut a disc of radius 1 into strips along the path. Up to the height y there lie
+//! Theory: divide a disc of radius 1 into strips along the path. Up to the height y there lie
 //!
 //! * `1/2 + (y sqrt(1 - y^2) + asin y) / pi` of its area, and
 //! * `(asin y - y sqrt(1 - y^2) (1 - 2 y^2)) / (4 pi)` of its second moment, the integral of y^2 over the area.
@@ -37,7 +37,7 @@ pub struct Lane {
 }
 
 impl Lane {
-    /// The only lane of a sun that is treated as a line along its path, as the chapter does.
+    /// The only lane of a sun that is treated as a line along its path, as in *GPU Gems* chapter 13.
     pub const CENTRE: Self = Self { offset_rad: 0.0, weight: 1.0 };
 
     /// Lanes across a disc, offsets ascending. Bytes grow with `count`, 1 to 5 as a rule; one lane is [`Lane::CENTRE`].
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn one_lane_is_the_chapters() {
+    fn one_lane_is_linear_light() {
         assert_eq!(Lane::across_disc(1, 0.005), [Lane::CENTRE]);
         assert_eq!(Lane::CENTRE.chord(0.005), 1.0);
         assert_eq!(Lane::CENTRE.chord(0.0), 1.0);

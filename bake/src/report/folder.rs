@@ -37,8 +37,8 @@ mod tests {
 
     #[test]
     fn force_replaces_a_report_and_nothing_else() {
-        let desk = tempfile::tempdir().unwrap();
-        let target = desk.path().join("made/on the way");
+        let temporary = tempfile::tempdir().unwrap();
+        let target = temporary.path().join("made/on the way");
         let files = |text: &str| [(REPORT_JSON, text.as_bytes().to_vec()), (REPORT_HTML, Vec::new())];
         let read = || std::fs::read_to_string(target.join(REPORT_JSON)).unwrap();
         write(&target, false, REPORT_JSON, &files("old")).unwrap();
@@ -53,10 +53,10 @@ mod tests {
 
     #[test]
     fn a_report_that_is_dropped_leaves_nothing() {
-        let desk = tempfile::tempdir().unwrap();
-        let folder = begin(&desk.path().join("a/b"), false, REPORT_JSON).unwrap();
+        let temporary = tempfile::tempdir().unwrap();
+        let folder = begin(&temporary.path().join("a/b"), false, REPORT_JSON).unwrap();
         folder.write_file(REPORT_JSON, |file| file.write_all(b"half")).unwrap();
         drop(folder);
-        assert_eq!(std::fs::read_dir(desk.path()).unwrap().count(), 0);
+        assert_eq!(std::fs::read_dir(temporary.path()).unwrap().count(), 0);
     }
 }

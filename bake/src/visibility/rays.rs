@@ -1,6 +1,6 @@
-//! N rays a point: the method of the chapter, and the baseline for the others.
+//! N rays a point: the method of *GPU Gems* chapter 13, and the baseline for the others.
 //!
-//! Based on *GPU Gems* chapter 13, section 13.3.2. The path is cut into N equal steps, and a ray is traced at the
+//! Based on section 13.3.2 of that chapter. The path is divided into N equal steps, and a ray is traced at the
 //! middle of each; the step is lit or dark as its ray is, so edges land half-way between rays. What lies between two
 //! rays and touches neither is missed: errors are up to 1/(2N) of the path an edge, and features thinner than 1/N may
 //! vanish.

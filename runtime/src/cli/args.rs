@@ -280,7 +280,7 @@ impl AmbientChoice {
 pub enum FilterChoice {
     /// Four texels are evaluated, then blended.
     Bilinear,
-    /// One texel: blocky, the look of the chapter.
+    /// One texel, unfiltered: blocky.
     Nearest,
 }
 

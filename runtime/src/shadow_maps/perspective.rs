@@ -3,10 +3,10 @@
 //! the eye get more texels.
 //!
 //! In that space the sun is a point or, where it stands across the view, a direction. The point may lie in front of the
-//! camera or behind it; then rays run backwards through infinity. The chapter has a matrix for each case, one of them
-//! with an inverted depth range that sees past infinity, so that casters behind the eye are on the map and the virtual
-//! camera need not move back. Here one formula covers all cases. Let `q` be a point after the camera's projection and
-//! `l` the sun's direction after it, both homogeneous; then
+//! camera or behind it; then rays run backwards through infinity. *GPU Gems* chapter 14 has a matrix for each case, one
+//! of them with an inverted depth range that sees past infinity, so that casters behind the eye are on the map and the
+//! virtual camera need not move back. Here one formula covers all cases. Let `q` be a point after the camera's
+//! projection and `l` the sun's direction after it, both homogeneous; then
 //!
 //! ```text
 //! v(q) = l.w q.xyz - q.w l.xyz
@@ -16,7 +16,7 @@
 //! the light. A map that looks along an axis has `w = axis . v`, which stays positive for any caster that shades a
 //! receiver, however far behind the eye. So the inverted matrix is not needed.
 //!
-//! * The map is fitted to the part of the scene's box that is in view (the chapter's unit cube clipping).
+//! * The map is fitted to the part of the scene's box that is in view (chapter 14's unit cube clipping).
 //! * The strength of the warp depends on how far the virtual camera stands behind the eye (Wimmer and others, "Light
 //!   space perspective shadow maps", EGSR 2004). A few distances and axes are tried ([`super::warp`]); the one with the
 //!   smallest texels in pixels wins, and if none is better than an orthographic map, that is used.
