@@ -110,7 +110,7 @@ impl<'a> Frames<'a> {
         Self { stage, all: times.map(shots).collect(), rounds }
     }
 
-    /// Draws every frame several times, maps anew each time, with and without comparisons in turn; the least of each
+    /// Draws every frame several times, maps again each time, with and without comparisons in turn; the least of each
     /// frame's times counts.
     fn times(&self, gpu: &Gpu, settings: MapSettings) -> Times {
         let optimizations = |sampling| MapOptimizations { cache: false, sampling, ..MapOptimizations::default() };

@@ -264,7 +264,7 @@ fn optimizations(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
 
 /// Soft edges from many hard suns: what they take, and how far they are from truth.
 fn suns(gpu: &Gpu, name: &str, frames: &Frames) {
-    println!("\n{name}: the sun's disc as so many suns, against truth:soft:{SOFT_RAYS}");
+    println!("\n{name}: the sun's disc as N suns, against truth:soft:{SOFT_RAYS}");
     println!("| suns | frame | of it silhouettes | mean error | pixels off by more than 1/16 |");
     println!("|---|---|---|---|---|");
     let truth = |(moment, shots): &(Moment, Vec<Seen>)| -> Vec<Raster<f32>> {

@@ -3,7 +3,7 @@
 //!     cargo run --release --example shadow_maps -- SHEET.png [SCENE [HH:MM [MAP_SIZE]]]
 //!
 //! Draws our own scene from nearby, or another through its default camera, on a June day in the desert, at 17:00
-//! unless told otherwise, with maps of 1024 texels. Hard variants are held against truth of the sun's centre, soft
+//! unless told otherwise, with maps of 1024 texels. Hard variants are compared with truth of the sun's centre, soft
 //! ones against truth of its disc.
 
 mod common;

@@ -103,7 +103,7 @@ fn playback_is_near_truth_and_wrong_at_edges_alone() {
     }
 }
 
-/// Pixels around which an image is the same for so many pixels each way.
+/// Pixels around which an image is the same for `reach` pixels in each direction.
 fn far_from_change(image: &Raster<f32>, reach: i64) -> Vec<usize> {
     let [width, height] = image.size.map(i64::from);
     let at = |x: i64, y: i64| image.pixels[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];

@@ -106,7 +106,7 @@ fn posts_on_a_floor() {
     }
 }
 
-/// Maps of ambient light full of noise, of so many sides.
+/// Maps of ambient light full of noise, of one side or two.
 fn noisy_ambient(stage: &Stage, sides: usize) -> AmbientMaps {
     let texels = stage.pages[0].width as usize * stage.pages[0].height as usize;
     let mut state = 11;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sunbake::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimate, solve_ambient};
 use sunbake::atlas::SurfacePoint;
 
-/// Settings with so many rays, all outputs and no distance limit.
+/// Settings with a number of rays, all outputs and no distance limit.
 pub fn rays(rays: u32) -> AmbientSettings {
     AmbientSettings { rays, distance_m: None, error: None, wants_bent: true, wants_sky: true, seed: 0 }
 }

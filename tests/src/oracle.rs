@@ -30,8 +30,9 @@ const GROWTH: f64 = 1e-12;
 /// Enlargement of cones, in cosine, and of windows, in radians: far more than rounding.
 const SLACK_COS: f64 = 1e-12;
 const SLACK_RAD: f64 = 1e-7;
-/// Windows wider than this are worth quartering the triangle, up to so many times.
+/// Windows wider than this are worth quartering the triangle.
 const WIDE_RAD: f64 = 0.02;
+/// How often a triangle is quartered at most.
 const MOST_HALVINGS: u32 = 5;
 
 /// A scene and evenly spaced suns along a path, the first half a step after t = 0.

@@ -9,7 +9,7 @@ use sunbake_tests::compared::{PLAYED, TRUE, bake_into, compared, mean_error, pos
 
 type Texels = ImageBuffer<Rgba<u16>, Vec<u16>>;
 
-/// Asserts that a defect raises a set's mean error at least so many times.
+/// Asserts that a defect multiplies a set's mean error by at least `least`.
 fn assert_caught(defect: &str, least: f64, spoil: impl Fn(&Path)) {
     let folder = tempfile::tempdir().unwrap();
     bake_into(folder.path(), "set", &posts(0.0), |settings| settings);

@@ -1,4 +1,5 @@
-//! Materials that the user leaves out: outline hulls, sky domes and the like, which no eye and no sunbeam should meet.
+//! Materials that the user leaves out: outline hulls, sky domes and other surfaces that should neither be seen nor cast
+//! a shadow.
 
 use super::error::BakeError;
 use crate::scene::{Alpha, Scene};

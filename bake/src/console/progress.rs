@@ -55,7 +55,7 @@ impl ProgressLine {
         }
     }
 
-    /// Counts so many parts more.
+    /// Counts more parts as done.
     pub fn step(&self, by: u64) {
         if let Ok(bar) = self.bar.lock()
             && let Some(bar) = bar.as_ref()

@@ -76,7 +76,7 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Columns of a sheet of so many pictures: somewhat wider than high.
+/// Columns of a sheet of `count` pictures: somewhat wider than high.
 fn columns(count: u32) -> u32 {
     ((f64::from(count) * 1.2).sqrt().round() as u32).max(1)
 }

@@ -48,7 +48,7 @@ struct Trial {
     edges: Vec<(usize, DVec3)>,
 }
 
-/// As many cameras as asked for, or fewer if there are not so many candidates. `aspect` is the picture's width over its
+/// As many cameras as asked for, or fewer if there are fewer candidates. `aspect` is the picture's width over its
 /// height.
 pub fn shadow_edge_cameras(
     stage: &Stage,

@@ -86,7 +86,7 @@ pub enum Reason {
     Usual,
     /// It may be needed, which depends on the view and the light.
     Possible,
-    /// So many things need it: images, batches, layers, suns, maps.
+    /// N things need it: images, batches, layers, suns, maps.
     Count(usize),
     /// The picture shows how much of the light is seen, and no colours.
     VisibilityPicture,
@@ -94,9 +94,9 @@ pub enum Reason {
     Unread,
     /// The sun gives no light, or was not asked for.
     SunDown,
-    /// So many slices of the view have a map each.
+    /// N slices of the view have a map each.
     Slices(usize),
-    /// So many faces of a cube around the sun are seen.
+    /// N faces of a cube around the sun are seen.
     CubeFaces(usize),
     /// The shader compares four gathered texels itself.
     Gathered,
@@ -107,10 +107,10 @@ pub enum Reason {
 pub enum Uncounted {
     /// No more than `wording.rs` says of the effect in general.
     Nothing,
-    /// Prisms of so many triangles.
+    /// Prisms of N triangles.
     Prisms(usize),
-    /// So many comparisons per pixel.
+    /// N comparisons per pixel.
     Comparisons(u32),
-    /// So many rays per pixel and light; none where one ray is traced.
+    /// N rays per pixel and light; none where one ray is traced.
     Rays(Option<u32>),
 }

@@ -10,7 +10,7 @@ pub fn baked(stage: &Stage) -> DrawPlan {
     DrawPlan { needs, totals: Census { map_bytes, ..Census::default() }, is_exact: true }
 }
 
-/// Rays: so many per pixel over the light's disc, or one to its middle.
+/// Rays: N per pixel over the light's disc, or one to its middle.
 pub fn truth(stage: &Stage, rays: Option<u32>) -> DrawPlan {
     let need = |effect, is_on: bool| DrawNeed::new(effect, is_on.then(Census::default), Reason::Usual);
     let needs = vec![

@@ -54,7 +54,7 @@ pub fn bake(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits) -> Stage
     bake_lanes(scene, path, cell, bits, 1)
 }
 
-/// The same, with so many lanes across the sun's disc.
+/// The same, with several lanes across the sun's disc.
 pub fn bake_lanes(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits, lane_count: usize) -> Stage {
     let mut scene = scene;
     let geometry = Geometry::new(&scene);

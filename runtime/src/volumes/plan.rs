@@ -1,4 +1,4 @@
-//! What is drawn of each caster. This is decided anew for each view.
+//! What is drawn of each caster. This is decided again for each view.
 
 use super::casters::Casters;
 use super::culling::{Frustum, Receivers, Targets, is_in_range};

@@ -30,7 +30,7 @@ fn valid_coordinates_of_the_file_are_kept(file: &Path) {
 
 /// B16: the house's `TEXCOORD_1` was made for light maps, but two islands lie on top of others: 1.4 % of the area of
 /// one mesh.
-fn overlapping_coordinates_are_made_anew(file: &Path) {
+fn overlapping_coordinates_are_replaced(file: &Path) {
     let CheckedAtlas { atlas, .. } = bake_and_check(&open(file), &settings(1024));
     assert!(atlas.layouts.iter().all(|l| l.origin == LayoutOrigin::Unwrapped));
     assert_eq!(atlas.warnings.len(), 1, "{:?}", atlas.warnings);
@@ -72,7 +72,7 @@ pub fn trials() -> Vec<Trial> {
             "box_textured/CornellBox.glb",
             valid_coordinates_of_the_file_are_kept,
         ),
-        ("overlapping_coordinates_are_made_anew", "pc_house/house.glb", overlapping_coordinates_are_made_anew),
+        ("overlapping_coordinates_are_replaced", "pc_house/house.glb", overlapping_coordinates_are_replaced),
         (
             "meshes_under_many_nodes_are_unwrapped_once",
             "osrf_city/osrf_city.glb",

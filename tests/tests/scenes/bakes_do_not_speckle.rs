@@ -28,7 +28,7 @@ fn bake(file: &Path) -> BakedFolder {
     BakedFolder { set: read(&target).unwrap_or_else(|error| panic!("{error}")), _folder: folder }
 }
 
-/// Covered texels that disagree with every neighbour in their plane about whether it is noon's sun they see, as a share
+/// Covered texels that disagree with every neighbour in their plane about whether they see the sun at `t`, as a share
 /// of those that have at least three such neighbours. Wires and railings make some; acne makes many.
 fn speckle(set: &BakedSet, t: f64) -> f64 {
     let texels = draw(set, usize::MAX, 0).expect("the set's scene loads");

@@ -3,7 +3,7 @@
 //!
 //! What each variant gets wrong may be a tenth more than what is written down, a line a measurement, in
 //! `shadow_maps_match_truth.txt` or, at full size, in `shadow_maps_match_truth_full.txt`. A measurement without a
-//! line fails; `BLESS=1` writes the lines anew. On our own scene the recommended variants have neither acne nor
+//! line fails; `BLESS=1` rewrites the lines. On our own scene the recommended variants have neither acne nor
 //! leaks, whatever is written.
 
 use crate::{is_full, june, times};

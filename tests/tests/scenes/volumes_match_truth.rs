@@ -55,7 +55,7 @@ fn masks_are_right(scene: &Path, edge_px: u32) {
     assert!((all.wrong_in_band as f64) < FEW_IN_BAND * all.in_band as f64, "{all:?}");
 }
 
-/// Drawing a prism for each of a city's triangles, anew each frame, would take minutes.
+/// Drawing a prism for each of a city's triangles, again in each frame, would take minutes.
 fn is_quick(way: &VolumeSettings) -> bool {
     way.mode != Mode::Triangles || way.optimizations == VolumeOptimizations::default()
 }

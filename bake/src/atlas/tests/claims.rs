@@ -179,8 +179,8 @@ fn a_layout_of_the_whole_scene_is_used_as_it_is() {
         assert_eq!(Some(&layout.uvs), mesh.texcoords[1].as_ref());
         assert_eq!(layout.indices, mesh.indices);
     }
-    let anew = AtlasSettings { keeps_existing: false, ..settings(Density::Pages(1), 256) };
-    assert!(build(&scene, &anew, &|_| true).unwrap().layouts.iter().all(|l| l.origin == LayoutOrigin::Unwrapped));
+    let unwraps = AtlasSettings { keeps_existing: false, ..settings(Density::Pages(1), 256) };
+    assert!(build(&scene, &unwraps, &|_| true).unwrap().layouts.iter().all(|l| l.origin == LayoutOrigin::Unwrapped));
 }
 
 #[test]
@@ -196,7 +196,7 @@ fn layouts_of_single_meshes_get_rectangles_beside_unwrapped_ones() {
 
 /// B16.
 #[test]
-fn islands_of_the_file_that_would_share_texels_are_unwrapped_anew() {
+fn islands_of_the_file_that_would_share_texels_are_unwrapped_again() {
     // Four hundred squares with a gap of a thousandth between them: fine at 4096 texels, not at 128.
     let mut tiles = Mesh { texcoords: [None, Some(Vec::new())], ..Mesh::default() };
     for k in 0..400u32 {

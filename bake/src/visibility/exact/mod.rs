@@ -54,8 +54,8 @@
 //! * Corners in the tracer's axes, turned as they are tested, to spare a second copy: **lost**, 1.05.
 //! * Boxes in 8 bits, two cache lines a node instead of four: nothing.
 //! * All of a point's work as one function compiled for the widest SIMD: nothing.
-//! * Gaps on the heap, made anew for each point (they are kept from one to the next now): half of all time went to
-//!   allocation.
+//! * Gaps on the heap, allocated again for each point (they are kept from one to the next now): half of all time went
+//!   to allocation.
 //!
 //! **What is left**, on our own scene: by a profile, a quarter to a third follows alpha masks (square by square, each
 //! with a branch that nothing predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a

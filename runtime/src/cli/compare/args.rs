@@ -34,7 +34,7 @@ pub struct CompareArgs {
     /// compared if they are named.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub techniques: Vec<String>,
-    /// What all are held against: truth:soft, truth:soft:N, truth:hard, or any of what can be compared.
+    /// The reference: truth:soft, truth:soft:N, truth:hard, or any of what can be compared.
     #[arg(long, value_name = "NAME", default_value = "truth:soft")]
     pub against: String,
     /// When: HH:MM by the set's local clocks, or a fraction of its path. May be given several times. [default: five
@@ -64,7 +64,7 @@ pub struct CompareArgs {
     pub page_size: Option<u32>,
     /// Of a scene: leave a material out; it is not drawn, not baked and casts nothing. May be given several times.
     ///
-    /// For what no sunbeam should meet: outline hulls, sky domes, collision shells.
+    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells.
     #[arg(long, value_name = "MATERIAL")]
     pub leave_out: Vec<String>,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.

@@ -2,7 +2,7 @@
 //!
 //! Techniques are built, drawn with and dropped one after the other, so that only one is in memory. Each draws all
 //! frames once to warm up, and then all of them again in each round; the least of a frame's times counts. Nothing is
-//! kept from frame to frame, as under a sun that moves: shadow maps and silhouettes are found anew.
+//! kept from frame to frame, as under a sun that moves: shadow maps and silhouettes are computed again.
 
 mod drawing;
 mod lit_frame;

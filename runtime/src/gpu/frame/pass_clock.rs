@@ -129,7 +129,7 @@ impl Stopwatch {
     }
 }
 
-/// Sums of time stamps, in steps of so many seconds, by phase.
+/// Sums of time stamps, by phase. A step of a stamp takes `seconds`.
 fn frame_times(phases: &[Phase], stamps: &[u64], seconds: f64) -> FrameTimes {
     let mut times = FrameTimes::default();
     for (phase, pair) in phases.iter().zip(stamps.chunks_exact(2)) {

@@ -171,7 +171,7 @@ impl<'g> MapRenderer<'g> {
         &self.drawn[..self.report.maps.min(self.drawn.len())]
     }
 
-    /// Forgets the maps, so that the next frame draws them anew.
+    /// Forgets the maps, so that the next frame draws them again.
     pub fn forget(&mut self) {
         self.drawn.clear();
         self.extents = None;
@@ -216,7 +216,7 @@ impl<'g> MapRenderer<'g> {
         MapNeeds { output, settings, reads, shading, ground_casts, pixels, is_exact: true }
     }
 
-    /// What pictures of a kind and of so many pixels call for: what the last picture took, if it was of this kind;
+    /// What pictures of a kind and of a number of pixels call for: what the last picture took, if it was of this kind;
     /// else an upper bound.
     pub fn plan_of(&self, stage: &Stage, output: Output, pixels: u64) -> DrawPlan {
         let most = || MapNeeds::most(stage, &self.shadow_scene, &self.settings, self.reads, output, pixels);
@@ -250,7 +250,7 @@ fn compares(settings: &MapSettings) -> bool {
     !settings.gathers() && !matches!(settings.variant, Variant::Plain | Variant::Planar)
 }
 
-/// An upper bound of what pictures of a kind and of so many pixels call for, whatever the view and the moment, of a
+/// An upper bound of what pictures of a kind and of a number of pixels call for, whatever the view and the moment, of a
 /// stage of which nothing has been built.
 pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: u64) -> DrawPlan {
     let scene = ShadowScene::new(stage);

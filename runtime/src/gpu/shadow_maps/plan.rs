@@ -72,7 +72,7 @@ impl MapNeeds {
         Self { output, settings, reads, shading, ground_casts, pixels, is_exact: false }
     }
 
-    /// The same where so many maps were drawn, and the others kept.
+    /// The same where `drawn` maps were drawn, and the others kept.
     pub fn drawn(self, drawn: usize) -> Self {
         match self.shading {
             SunShading::Shaded { maps, .. } => Self { shading: SunShading::Shaded { maps, drawn }, ..self },

@@ -139,7 +139,7 @@ impl<'g> VolumeRenderer<'g> {
         self.casters.counts
     }
 
-    /// Forgets the volumes of the last lights, so that the next frame finds them anew.
+    /// Forgets the volumes of the last lights, so that the next frame computes them again.
     pub fn forget(&mut self) {
         self.extruded = [None, None];
     }

@@ -62,7 +62,7 @@ pub struct VolumeNeeds {
     pub is_exact: bool,
 }
 
-/// How one of so many lights is added.
+/// How one of `count` lights is added.
 pub fn light_blend(output: Output, count: usize) -> LightBlend {
     match (output, count) {
         (_, 2..) => LightBlend::AddShare,

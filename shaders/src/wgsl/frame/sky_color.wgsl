@@ -1,4 +1,4 @@
-// The sky: from horizon to zenith, a glow around the sun that hugs the horizon when the sun is low, the disc itself,
+// The sky: from horizon to zenith, a glow around the sun, concentrated near the horizon, the disc itself,
 // and haze below the horizon. Twin of runtime/src/light/sky.rs.
 fn sky_color(direction: vec3<f32>) -> vec3<f32> {
     let height = max(direction.y, 0.0);
