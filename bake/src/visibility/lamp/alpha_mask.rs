@@ -10,7 +10,7 @@
 //!
 //! The sun's version, along a curve, is `exact/alpha_mask.rs`.
 
-use super::hide::Leg;
+use super::hide::SegmentFromPoint;
 use super::span::{Span, common, not_negative};
 use crate::trace::MaskedTriangle;
 use glam::DVec3;
@@ -24,7 +24,7 @@ const MOST_STEPS: f64 = 65_536.0;
 /// Solid spans; usually few.
 pub(super) type SolidSpans = SmallVec<[Span; 8]>;
 
-/// An alpha-masked triangle, seen from a point along a leg. Each pair holds values at the leg's two ends.
+/// An alpha-masked triangle, seen from a point along a segment. Each pair holds values at the segment's two ends.
 pub(super) struct MaskedTriangleView<'a> {
     mask: MaskedTriangle<'a>,
     /// For each corner, its weight.
@@ -36,8 +36,8 @@ pub(super) struct MaskedTriangleView<'a> {
 
 impl<'a> MaskedTriangleView<'a> {
     /// From the corners relative to the point.
-    pub fn new(mask: MaskedTriangle<'a>, leg: &Leg, [a, b, c]: [DVec3; 3]) -> Self {
-        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|n| leg.along(n));
+    pub fn new(mask: MaskedTriangle<'a>, segment: &SegmentFromPoint, [a, b, c]: [DVec3; 3]) -> Self {
+        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(|n| segment.along(n));
         let along = [mask.texel_uvs.map(|uv| uv.x), mask.texel_uvs.map(|uv| uv.y)].map(|uvs| blend(weights, uvs));
         Self { total: blend(weights, [1.0; 3]), along, weights, mask }
     }

@@ -1,35 +1,37 @@
 //! On which part of a segment a triangle occludes the lamp.
 //!
-//! Theory: let the corners v be relative to the point, `n_i = v_i x v_(i+1)` turned so that `V = v0 . (v1 x v2) > 0`,
+//! Theory: let the corners v be relative to the point, `n_i = v_i x v_(i+1)` signed so that `V = v0 . (v1 x v2) > 0`,
 //! and N their sum. The ray to the lamp l passes inside the triangle where all `n_i . l >= 0`, and meets its plane in
 //! front of the lamp where `N . l >= V`. On a segment `l(s) = l0 + s (l1 - l0)`, so all four are linear in s, and what
 //! is hidden is one span in closed form. Watertight, since `a x b` and `b x a` are exact opposites: neighbours end at
 //! the same number.
 //!
-//! Two departures keep rounding from deciding. A lamp within the run-up r of shadow rays behind a triangle is not
-//! occluded by it, `N . l >= V + r |N|`: a lamp that moves along a wall is visible from both sides, and rounding does
-//! not decide. And shadow rays start r before their point (see [`crate::trace`]), so a triangle counts that far behind
-//! it: with either turn of the n_i, where V is negative, the ray's line crosses the plane at the distance
-//! `|V| |l| / (N . l)` behind the point, which is at most r where `N . l >= |V| / r |l|`. That is a cone; a segment
-//! meets it in one span, whose ends are roots of a quadratic.
+//! Two departures from this keep rounding from deciding:
+//!
+//! * A lamp within the run-up r of shadow rays behind a triangle is not occluded by it, `N . l >= V + r |N|`. A lamp
+//!   that moves along a wall is visible from both sides.
+//! * Shadow rays start r before their point (see [`crate::trace`]), so a triangle counts that far behind it. With
+//!   either orientation of the n_i, where V is negative, the ray's line crosses the plane at the distance
+//!   `|V| |l| / (N . l)` behind the point, which is at most r where `N . l >= |V| / r |l|`. That is a cone; a segment
+//!   meets it in one span, whose ends are roots of a quadratic.
 
 use super::span::{Span, all_not_negative, common};
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// At most one span for each turn.
+/// At most one span for each orientation.
 pub(super) type Spans = SmallVec<[Span; 2]>;
 
 /// A segment of the lamp's path seen from a point, tracer space.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Leg {
+pub(super) struct SegmentFromPoint {
     /// Its ends, relative to the point.
     pub ends: [DVec3; 2],
     /// Run-up of shadow rays.
     pub run_up: f64,
 }
 
-impl Leg {
+impl SegmentFromPoint {
     /// The values of `n . l` at both ends.
     #[inline]
     pub fn along(&self, n: DVec3) -> [f64; 2] {
@@ -50,11 +52,11 @@ impl Leg {
             let side = if volume < 0.0 { -1.0 } else { 1.0 };
             return self.passed(normals, area, volume, margin, side).into_iter().collect();
         }
-        let turns = [1.0, -1.0].into_iter();
-        turns.filter_map(|side| self.passed_near(normals, area, volume, margin, side)).collect()
+        let orientations = [1.0, -1.0].into_iter();
+        orientations.filter_map(|side| self.passed_near(normals, area, volume, margin, side)).collect()
     }
 
-    /// Where the ray passes inside the triangle, turned by `side`, and the lamp is beyond its plane.
+    /// Where the ray passes inside the triangle, oriented by `side`, and the lamp is beyond its plane.
     #[inline]
     fn passed(&self, normals: [DVec3; 3], area: DVec3, volume: f64, margin: f64, side: f64) -> Option<Span> {
         let beyond = self.along(area).map(|value| side * (value - volume) - margin);
@@ -106,8 +108,8 @@ mod tests {
 
     const RUN_UP: f64 = 0.01;
 
-    fn leg(from: [f64; 3], to: [f64; 3]) -> Leg {
-        Leg { ends: [from, to].map(DVec3::from_array), run_up: RUN_UP }
+    fn segment(from: [f64; 3], to: [f64; 3]) -> SegmentFromPoint {
+        SegmentFromPoint { ends: [from, to].map(DVec3::from_array), run_up: RUN_UP }
     }
 
     /// A square's half, one above the point, and the same at another height.
@@ -118,37 +120,37 @@ mod tests {
     #[test]
     fn a_lamp_is_hidden_while_it_is_behind_the_triangle() {
         // At height 2 the shadow of the edge x = -1 is at x = -2.
-        let spans = leg([-4.0, 2.0, 0.0], [0.0, 2.0, 0.0]).hidden_by(roof(1.0));
+        let spans = segment([-4.0, 2.0, 0.0], [0.0, 2.0, 0.0]).hidden_by(roof(1.0));
         assert_eq!(spans.as_slice(), [[0.5, 1.0]]);
         let [a, b, c] = roof(1.0);
-        assert_eq!(leg([-4.0, 2.0, 0.0], [0.0, 2.0, 0.0]).hidden_by([c, b, a]), spans);
+        assert_eq!(segment([-4.0, 2.0, 0.0], [0.0, 2.0, 0.0]).hidden_by([c, b, a]), spans);
     }
 
     #[test]
     fn triangles_beyond_the_lamp_occlude_nothing() {
-        assert!(leg([-4.0, 0.5, 0.0], [4.0, 0.5, 0.0]).hidden_by(roof(1.0)).is_empty());
+        assert!(segment([-4.0, 0.5, 0.0], [4.0, 0.5, 0.0]).hidden_by(roof(1.0)).is_empty());
         // Rising through the roof, hidden from there on, but for the margin.
-        let spans = leg([0.0, 0.5, 0.0], [0.0, 1.5, 0.0]).hidden_by(roof(1.0));
+        let spans = segment([0.0, 0.5, 0.0], [0.0, 1.5, 0.0]).hidden_by(roof(1.0));
         assert!((spans[0][0] - 0.5 - RUN_UP).abs() < 1e-12 && spans[0][1] == 1.0, "{spans:?}");
     }
 
     #[test]
     fn a_lamp_in_a_plane_is_hidden_from_neither_side_of_it() {
         for height in [1.0, 1.0 - 1e-9, 1.0 + 1e-9] {
-            assert!(leg([-0.5, height, 0.0], [0.5, height, 0.0]).hidden_by(roof(1.0)).is_empty());
+            assert!(segment([-0.5, height, 0.0], [0.5, height, 0.0]).hidden_by(roof(1.0)).is_empty());
         }
-        assert!(leg([-0.5, 0.0, 0.0], [0.5, 0.0, 0.3]).hidden_by(roof(0.0)).is_empty());
+        assert!(segment([-0.5, 0.0, 0.0], [0.5, 0.0, 0.3]).hidden_by(roof(0.0)).is_empty());
     }
 
     /// Shadow rays start before the point: what is a little behind it hides the lamp, what is farther does not.
     #[test]
     fn a_triangle_just_behind_the_point_hides_as_rays_find_it() {
-        let leg = leg([-4.0, 1.0, 0.0], [4.0, 1.0, 0.0]);
+        let segment = segment([-4.0, 1.0, 0.0], [4.0, 1.0, 0.0]);
         for (below, expected) in [(0.5 * RUN_UP, true), (1.5 * RUN_UP, false)] {
-            assert_eq!(!leg.hidden_by(roof(-below)).is_empty(), expected, "{below}");
+            assert_eq!(!segment.hidden_by(roof(-below)).is_empty(), expected, "{below}");
         }
         let below = 0.5 * RUN_UP;
-        let [start, end] = leg.hidden_by(roof(-below))[0];
+        let [start, end] = segment.hidden_by(roof(-below))[0];
         // A ray that climbs 1 in a distance of 2 has used up its run-up: x = -+sqrt(3).
         let reach = 3f64.sqrt() / 8.0;
         assert!((start - 0.5 + reach).abs() < 1e-12 && (end - 0.5 - reach).abs() < 1e-12, "{start} {end}");
@@ -157,8 +159,8 @@ mod tests {
     #[test]
     fn triangles_without_area_and_lamps_at_the_point_occlude_nothing() {
         let line = [DVec3::X, DVec3::X * 2.0, DVec3::X * 3.0];
-        assert!(leg([0.0, 1.0, 0.0], [9.0, 0.0, 0.0]).hidden_by(line).is_empty());
-        assert!(leg([0.0; 3], [0.0; 3]).hidden_by(roof(0.0)).is_empty());
-        assert!(leg([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).hidden_by(roof(0.5)).is_empty());
+        assert!(segment([0.0, 1.0, 0.0], [9.0, 0.0, 0.0]).hidden_by(line).is_empty());
+        assert!(segment([0.0; 3], [0.0; 3]).hidden_by(roof(0.0)).is_empty());
+        assert!(segment([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]).hidden_by(roof(0.5)).is_empty());
     }
 }

@@ -26,11 +26,11 @@ use crate::lamp::{LampPath, LampSegment};
 use crate::trace::Tracer;
 use alpha_mask::{MaskedTriangleView, SolidSpans};
 use glam::DVec3;
-use hide::Leg;
+use hide::SegmentFromPoint;
 use open::OpenSpans;
 use seeds::SeedTriangles;
 use span::{Span, common, not_negative};
-use walk::{Fan, Opened, Tree};
+use walk::{PointSegmentTriangle, NextLeaf, Tree};
 
 /// Lit intervals of a lamp in closed form.
 pub struct LampEngine<'a> {
@@ -99,26 +99,26 @@ impl LampSession<'_> {
         }
         let scale = tracer.tracer_from_bake();
         let origin = tracer.lift(point.position_m, normal, point.triangle) * scale;
-        let leg = Leg { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
-        self.close(index, side, origin, &leg, &mut open);
+        let from_point = SegmentFromPoint { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
+        self.close(index, side, origin, &from_point, &mut open);
         lit.extend(open.as_slice().iter().map(|span| span.map(|s| t_of(segment, s))));
     }
 
     /// Closes all that is occluded.
-    fn close(&mut self, index: usize, side: usize, origin: DVec3, leg: &Leg, open: &mut OpenSpans) {
+    fn close(&mut self, index: usize, side: usize, origin: DVec3, from_point: &SegmentFromPoint, open: &mut OpenSpans) {
         let tracer = self.engine.tracer;
         let seeds = &mut self.seeds[index][side];
         seeds.next_point();
-        self.work.triangles += seeds.try_all(|id| (close_with(tracer, id, origin, leg, open), open.is_empty()));
+        self.work.triangles += seeds.try_all(|id| (close_with(tracer, id, origin, from_point, open), open.is_empty()));
         if open.is_empty() {
             return;
         }
-        let mut fan = Fan::new(origin, leg, open);
+        let mut triangle = PointSegmentTriangle::new(origin, from_point, open);
         self.engine.tree.start(&mut self.stack);
-        while let Opened::Leaf(ids) = self.engine.tree.next_leaf(&fan, &mut self.stack, &mut self.work.nodes) {
+        while let NextLeaf::Leaf(ids) = self.engine.tree.next_leaf(&triangle, &mut self.stack, &mut self.work.nodes) {
             self.work.triangles += ids.len() as u64;
             let mut is_useful = false;
-            for &id in ids.iter().filter(|&&id| close_with(tracer, id, origin, leg, open)) {
+            for &id in ids.iter().filter(|&&id| close_with(tracer, id, origin, from_point, open)) {
                 seeds.add(id);
                 is_useful = true;
             }
@@ -126,7 +126,7 @@ impl LampSession<'_> {
                 return;
             }
             if is_useful {
-                fan.update(open);
+                triangle.update(open);
             }
         }
     }
@@ -145,16 +145,16 @@ fn t_of(segment: &LampSegment, s: f64) -> f64 {
 }
 
 /// Closes what a triangle occludes. True if any of it was open.
-fn close_with(tracer: &Tracer, id: u32, origin: DVec3, leg: &Leg, open: &mut OpenSpans) -> bool {
+fn close_with(tracer: &Tracer, id: u32, origin: DVec3, from_point: &SegmentFromPoint, open: &mut OpenSpans) -> bool {
     let corners = tracer.corners()[id as usize].map(|corner| corner.as_dvec3() - origin);
-    let hidden = leg.hidden_by(corners);
+    let hidden = from_point.hidden_by(corners);
     if hidden.is_empty() {
         return false;
     }
     match tracer.mask(id) {
         None => hidden.iter().fold(false, |any, &span| open.close(span) | any),
         Some(mask) => {
-            let pierced = MaskedTriangleView::new(mask, leg, corners);
+            let pierced = MaskedTriangleView::new(mask, from_point, corners);
             let mut solid = SolidSpans::new();
             for &span in &hidden {
                 open.as_slice().iter().filter_map(|&still| common(span, still)).for_each(|part| {

@@ -7,7 +7,7 @@
 //!
 //! Where point and segment are in one line there is no plane, and the triangle's box alone decides.
 
-use super::hide::Leg;
+use super::hide::SegmentFromPoint;
 use super::open::OpenSpans;
 use crate::trace::{Tracer, binary_hierarchy};
 use glam::{DVec3, Vec3};
@@ -15,7 +15,7 @@ use smallvec::SmallVec;
 
 /// Growth of every box beyond the run-up, tracer space (whose half size is 512 to 1024).
 const BOX_PADDING: f64 = 1.0 / 256.0;
-/// Sine of the angle between the ends of a leg below which they count as in one line.
+/// Sine of the angle between the ends of a segment below which they count as in one line.
 const LEAST_SINE: f64 = 1e-7;
 /// Most open spans that are kept apart; more are joined.
 const MOST_SPANS: usize = 6;
@@ -33,12 +33,12 @@ struct TreeBox {
     half: DVec3,
     /// Number of triangles; none if it has children.
     count: u32,
-    /// Place of the first triangle, or index of the first child, whom the second follows.
+    /// Place of the first triangle, or index of the first of two consecutive children.
     first: u32,
 }
 
 /// The next step of a walk.
-pub(super) enum Opened<'a> {
+pub(super) enum NextLeaf<'a> {
     /// Nothing is left to visit.
     Done,
     /// A leaf with its triangles.
@@ -64,38 +64,38 @@ impl Tree {
         stack.extend((!self.nodes.is_empty()).then_some(0));
     }
 
-    /// Goes on to the next leaf that the fan may meet, near ones first. Counts the nodes met.
-    pub fn next_leaf(&self, fan: &Fan, stack: &mut Vec<u32>, nodes: &mut u64) -> Opened<'_> {
+    /// Goes on to the next leaf that the triangle may meet, near ones first. Counts the nodes met.
+    pub fn next_leaf(&self, triangle: &PointSegmentTriangle, stack: &mut Vec<u32>, nodes: &mut u64) -> NextLeaf<'_> {
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index as usize];
             *nodes += 1;
-            if !fan.meets(node) {
+            if !triangle.meets(node) {
                 continue;
             }
             if node.count > 0 {
-                return Opened::Leaf(&self.order[node.first as usize..(node.first + node.count) as usize]);
+                return NextLeaf::Leaf(&self.order[node.first as usize..(node.first + node.count) as usize]);
             }
             let children = [node.first, node.first + 1];
-            let [left, right] = children.map(|child| fan.distance2(&self.nodes[child as usize]));
+            let [left, right] = children.map(|child| triangle.distance2(&self.nodes[child as usize]));
             stack.extend(if left < right { [children[1], children[0]] } else { children });
         }
-        Opened::Done
+        NextLeaf::Done
     }
 }
 
 /// The triangle that a point and a segment span, and which part of it is open.
-pub(super) struct Fan {
+pub(super) struct PointSegmentTriangle {
     /// The point.
     origin: DVec3,
     ends: [DVec3; 2],
     /// Box of the triangle, relative to the point.
     low: DVec3,
     high: DVec3,
-    plane: Option<FanPlane>,
+    plane: Option<TrianglePlane>,
 }
 
 /// The triangle's plane. None of it is needed where the point is in line with the segment.
-struct FanPlane {
+struct TrianglePlane {
     /// Unit normal.
     normal: DVec3,
     /// What lies beyond the segment has a larger product with the first than the second.
@@ -104,21 +104,21 @@ struct FanPlane {
     open: SmallVec<[[DVec3; 2]; MOST_SPANS]>,
 }
 
-impl Fan {
-    /// The fan from `origin` to a leg.
-    pub fn new(origin: DVec3, leg: &Leg, open: &OpenSpans) -> Self {
-        let [first, last] = leg.ends;
+impl PointSegmentTriangle {
+    /// The triangle from `origin` to a segment.
+    pub fn new(origin: DVec3, segment: &SegmentFromPoint, open: &OpenSpans) -> Self {
+        let [first, last] = segment.ends;
         let zero = DVec3::ZERO;
         let (low, high) = (first.min(last).min(zero), first.max(last).max(zero));
         let across = first.cross(last);
         let area = across.length();
         let plane = (area > LEAST_SINE * first.length() * last.length()).then(|| {
             let normal = across / area;
-            FanPlane { normal, far: (normal.cross(first - last), area), open: SmallVec::new() }
+            TrianglePlane { normal, far: (normal.cross(first - last), area), open: SmallVec::new() }
         });
-        let mut fan = Self { origin, ends: leg.ends, low, high, plane };
-        fan.update(open);
-        fan
+        let mut triangle = Self { origin, ends: segment.ends, low, high, plane };
+        triangle.update(open);
+        triangle
     }
 
     /// Takes the spans that are open now.
@@ -145,7 +145,7 @@ impl Fan {
     }
 }
 
-impl FanPlane {
+impl TrianglePlane {
     fn meets(&self, centre: DVec3, half: DVec3) -> bool {
         let reach = |n: DVec3| n.abs().dot(half);
         let (far, limit) = self.far;
