@@ -15,54 +15,7 @@
 //! texel to texel (`alpha_mask.rs`, `follow.rs`). Triangles within the run-up of shadow rays are handled separately
 //! (`near.rs`). SIMD is chosen at run time and changes no bit: nothing is fused, every operation rounds alike.
 //!
-//! **What was tried.** Ratios are of time, from scenes of 36,000 to 600,000 triangles, before and after, on shared
-//! cores.
-//!
-//! What helped:
-//!
-//! * Eight triangles at a time in `f64`: about 140 ns for eight, by a profile, where the scalar prototype took 120 to
-//!   150 ns for one. The two ends of a span by one division, and no division for corners: 0.93 without foliage, nothing
-//!   with it.
-//! * The last point's occluders first, copied as they are found: a third fewer triangles than a list that ages.
-//! * Squares of equal texels crossed in one step: 0.6 where there is foliage.
-//! * Sixteen boxes a node instead of eight: 0.8 to 0.9, on an open city 1.05.
-//! * Corners of leaves instead of a box for each triangle, and wedges and cone by products with planes (tried
-//!   together): up to a third fewer triangles solved, 0.9 to 1.
-//! * Triangles turned into the arc's frame eight at a time, and most spans in one piece: 0.9 without foliage, nothing
-//!   with it.
-//! * No closures mapped over arrays within SIMD code, since they are not always inlined: 0.7 to 0.9, the largest gain
-//!   of all.
-//! * Along curves on which both texture coordinates run one way two borders lie ahead, not four: 0.9 where there is
-//!   foliage; four curves that take turns instead of one after the other, 0.85 more.
-//! * The largest square of equal texels that lies ahead, not around: 0.9 where there is foliage.
-//! * Alpha-masked triangles solved after solid ones, and batches not copied: 0.9 in shade.
-//!
-//! What did not:
-//!
-//! * One list of candidates for a block of 16 or 64 points. With triangles on it, gathered where a few scouts saw light
-//!   and the rest presumed dark and checked: **lost**, 1 to 1.5. Near surfaces are seen from a block under all angles
-//!   at once, so lists hold hundreds of triangles just where scenes are dense. With nodes and leaves on it, of what any
-//!   point of the block has left after its seeds, opened down to the size of the block: **nothing**, 0.98 to 1.1, since
-//!   sixteen boxes take 25 ns and what they save is spent on gathering, and seeds that stay the same for a block close
-//!   less.
-//! * Alpha-masked triangles followed for a whole block at the end: **lost**, 1.5 in foliage; leaves hide one another,
-//!   so each that is followed spares others.
-//! * Eight curves by SIMD: nothing over four in turns. Three of eight lanes were busy on average, and the look-up
-//!   between two steps is scalar.
-//! * Leaves of eight triangles instead of sixteen, and testing the boxes of a leaf's triangles before all are solved:
-//!   nothing.
-//! * Corners in the tracer's axes, turned as they are tested, to spare a second copy: **lost**, 1.05.
-//! * Boxes in 8 bits, two cache lines a node instead of four: nothing.
-//! * All of a point's work as one function compiled for the widest SIMD: nothing.
-//! * Gaps on the heap, allocated again for each point (they are kept from one to the next now): half of all time went
-//!   to allocation.
-//!
-//! **What is left**, on our own scene: by a profile, a quarter to a third follows alpha masks (square by square, each
-//! with a branch that nothing predicts), a seventh solves, a fifth tests boxes and corners, a tenth closes gaps, a
-//! tenth collects triangles. Two thirds of the triangles solved in a walk cross the cone but hide nothing that is still
-//! lit: a test of the edges in `f32` would tell. Not tried: the triangles across the edges of those that bound a gap
-//! before the hierarchy is asked (most walks in shade close a slit that has opened between two points); what a large
-//! occluder hides from a whole block; leaf cards cut to their outlines when they are loaded.
+//! **What was tried**, what it gained and what is left to gain is listed in `docs/decisions.md`.
 
 mod alpha_mask;
 mod arc;
