@@ -16,12 +16,12 @@ pub struct Agreement {
     pub beside_an_edge: u64,
     /// Suns about which they disagree, anywhere else.
     pub elsewhere: u64,
-    /// Spells of light or shade of two suns or more, of which the engine has none.
+    /// Lit or dark intervals of two suns or more, of which the engine has none.
     pub missed: u64,
     /// How far from brute force's nearest edge they disagree, at most.
     pub furthest_t: f64,
-    /// How far an edge of the engine is from brute force's nearest, at most. Spells too short for brute force to see
-    /// do not count.
+    /// How far an edge of the engine is from brute force's nearest, at most. Intervals too short for brute force to
+    /// resolve do not count.
     pub edge_error_t: f64,
 }
 
@@ -81,13 +81,13 @@ fn nearest(ascending: &[f64], t: f64) -> f64 {
     beside.map(|x| (x - t).abs()).fold(f64::INFINITY, f64::min)
 }
 
-/// Spells of two suns or more about all of which the engine is wrong.
+/// Lit or dark intervals of two suns or more about all of which the engine is wrong.
 fn missed(said: &[bool], truth: &[bool]) -> u64 {
     let mut first = 0;
     let mut count = 0;
-    for spell in truth.chunk_by(|a, b| a == b) {
-        let range = first..first + spell.len();
-        count += u64::from(spell.len() >= 2 && said[range.clone()].iter().all(|s| *s != spell[0]));
+    for run in truth.chunk_by(|a, b| a == b) {
+        let range = first..first + run.len();
+        count += u64::from(run.len() >= 2 && said[range.clone()].iter().all(|s| *s != run[0]));
         first = range.end;
     }
     count
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spell_that_is_not_found_is_missed() {
+    fn an_interval_that_is_not_found_is_missed() {
         assert_eq!(compare(&[[0.0, 1.0]]).missed, 2);
         let none = compare(&[]);
         assert_eq!((none.missed, none.elsewhere, none.beside_an_edge), (1, 6, 2));
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_spell_between_two_suns_is_no_error() {
+    fn an_interval_between_two_suns_is_no_error() {
         let brief = compare(&[[0.25, 0.5], [0.51, 0.75]]);
         assert_eq!((brief.elsewhere + brief.beside_an_edge, brief.edge_error_t), (0, 0.0));
     }

@@ -135,7 +135,7 @@ impl<'a> Oracle<'a> {
 }
 
 /// What [`Scene::is_solid_at`] says, but in `f64`: in `f32` the borders of a mask's texels are off by up to half a
-/// second of a day, and rays through their corners see spells that are not there.
+/// second of a day, and rays through their corners see light that is not there.
 fn is_solid_at(scene: &Scene, instance: usize, triangle: usize, barycentric: [f64; 2]) -> bool {
     let material = scene.material(instance);
     let Alpha::Mask { cutoff } = material.alpha else { return material.alpha == Alpha::Opaque };

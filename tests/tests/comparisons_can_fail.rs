@@ -162,7 +162,7 @@ fn lanes_and_bits_made_of_a_set_are_those_that_a_bake_makes() {
     assert_eq!(middle.pages[0].lanes, one.pages[0].lanes);
     let [made, baked] = [one.with_eight_bits(), stage("eight")];
     assert_eq!(made.bits, baked.bits);
-    // Codes of lists that rounding has not shortened; those hold their spells at the same places.
+    // Codes of lists that rounding has not shortened; those hold their intervals in the same places.
     let codes = |stage: &Stage| {
         let layers = stage.pages[0].lanes[0].layers.iter();
         layers.flat_map(|layer| layer.rise.iter().chain(&layer.fall).flatten().copied()).collect::<Vec<u16>>()

@@ -131,21 +131,22 @@ pub fn unexplained(seen: &[bool], answer: &Intervals) -> Vec<usize> {
     let is_at_edge = |step: usize| {
         let mut around = step.saturating_sub(1)..=(step + 1).min(STEPS - 1);
         let changes = around.any(|other| seen[other] != seen[step]);
-        // A spell that falls between two steps, told by the engine alone, must begin or end beside the step it touches.
+        // An interval that falls between two steps, told by the engine alone, must begin or end beside the step it
+        // touches.
         changes || answer.as_slice().iter().flatten().any(|edge| (edge - t(step)).abs() <= 1e-9)
     };
     (0..STEPS).filter(|&step| answer.contains(t(step)) != seen[step] && !is_at_edge(step)).collect()
 }
 
-/// A moment of every lit and every dark spell, but for those too short for the oracle's growth. Not the middle, in
+/// A moment of every lit and every dark interval, but for those too short for the oracle's growth. Not the middle, in
 /// which a path that is its own mirror image may touch a surface.
 pub fn moments(answer: &Intervals) -> Vec<f64> {
     let mut ends: Vec<f64> = answer.as_slice().iter().flatten().copied().collect();
     ends.insert(0, 0.0);
     ends.push(1.0);
     ends.windows(2)
-        .filter(|spell| spell[1] - spell[0] > 1e-9)
-        .map(|spell| spell[0] + 0.45 * (spell[1] - spell[0]))
+        .filter(|interval| interval[1] - interval[0] > 1e-9)
+        .map(|interval| interval[0] + 0.45 * (interval[1] - interval[0]))
         .collect()
 }
 

@@ -129,10 +129,10 @@ fn an_engine_that_claims_too_much_is_caught() {
     let coarse = Candidate { make: |tracer, lanes| Box::new(BisectEngine::new(tracer, lanes, 64, 60.0)), ..BISECT };
     let boasting = [coarse, Candidate { make: RAYS.make, ..BISECT }, Candidate { make: RAYS.make, ..EXACT }];
     for (index, engine) in boasting.iter().enumerate() {
-        assert!(engine.complaint(&here, &path, &point, &truth).is_some(), "{index}");
+        assert!(engine.disagreement(&here, &path, &point, &truth).is_some(), "{index}");
     }
     for honest in ALL {
-        assert_eq!(honest.complaint(&here, &path, &point, &truth), None);
+        assert_eq!(honest.disagreement(&here, &path, &point, &truth), None);
     }
 }
 

@@ -6,7 +6,7 @@ use sunbake::atlas::SurfacePoint;
 use sunbake::sun::{SunArc, SunPath};
 use sunbake::testing::{SceneBuilder, icosphere};
 use sunbake::visibility::{IntervalTable, Intervals};
-use sunbake_tests::engines::{ALL, EXACT, must_be};
+use sunbake_tests::engines::{ALL, EXACT, assert_intervals};
 use sunbake_tests::paths::{Random, SOLSTICE_DEG, arc_through};
 use sunbake_tests::{Traced, path_of};
 
@@ -118,9 +118,9 @@ fn a_hole_lights_just_while_the_sun_is_in_it() {
             let expected = behind(&path, from, &outline).intersection(&up);
             for engine in ALL {
                 let found = engine.lit(&here, &path, &point);
-                must_be("a hole", &found, &expected, (engine.edge_t)(&path) + 1e-9, 2.0 * engine.blind_t);
+                assert_intervals("a hole", &found, &expected, (engine.edge_t)(&path) + 1e-9, 2.0 * engine.blind_interval_t);
             }
-            long_enough += u32::from(expected.lit_length() > 2.0 * EXACT.blind_t);
+            long_enough += u32::from(expected.lit_length() > 2.0 * EXACT.blind_interval_t);
         }
     }
     assert!(long_enough >= 60, "only {long_enough} holes let in light for long");
@@ -149,14 +149,14 @@ fn a_needle_hides_the_sun_for_a_third_of_a_second() {
             let dark = behind(&path, origin(&here, &point), &outline);
             let seconds = dark.lit_length() * minutes * 60.0;
             assert!((0.25..0.35).contains(&seconds), "the needle hides {seconds} s");
-            if dark.lit_length() <= 2.0 * EXACT.blind_t {
+            if dark.lit_length() <= 2.0 * EXACT.blind_interval_t {
                 continue;
             }
             tried += 1;
             let [start, end] = dark.as_slice()[0];
             let expected = Intervals::from_unsorted(vec![[0.0, start], [end, 1.0]]);
             let found = EXACT.lit(&here, &path, &point);
-            must_be(&format!("{minutes} minutes"), &found, &expected, (EXACT.edge_t)(&path) + 1e-9, 0.0);
+            assert_intervals(&format!("{minutes} minutes"), &found, &expected, (EXACT.edge_t)(&path) + 1e-9, 0.0);
             assert_eq!(found.as_slice().len(), 2);
         }
     }

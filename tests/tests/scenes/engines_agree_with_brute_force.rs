@@ -94,9 +94,9 @@ fn random_texels_agree_with_brute_force(file: &Path) {
         started.elapsed().as_secs_f64()
     );
     assert!(found.edges > 0, "there is nothing to compare: {found:?}");
-    // An engine that is blind to short spells is wrong where they are, and only there.
+    // An engine that is blind to short intervals is wrong where they are, and only there.
     assert!(!FINDS_ALL || (found.elsewhere, found.missed) == (0, 0), "{found:?}");
-    assert!(found.furthest_t <= EXACT.blind_t + 1.0 / SUNS as f64, "{found:?}");
+    assert!(found.furthest_t <= EXACT.blind_interval_t + 1.0 / SUNS as f64, "{found:?}");
 }
 
 pub fn trials() -> Vec<Trial> {
