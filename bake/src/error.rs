@@ -34,7 +34,7 @@ pub enum ErrorClass {
 
 /// An error that knows its class and, if a setting can help, its remedy.
 pub trait Explain: std::error::Error {
-    /// Its class.
+    /// What kind of mistake it is, which decides the exit code.
     fn class(&self) -> ErrorClass;
 
     /// What to do next, where its text does not already say so.

@@ -14,7 +14,7 @@ impl Intervals {
         Self(vec![[0.0, 1.0]])
     }
 
-    /// Never lit.
+    /// No interval: the light is never seen.
     pub fn never() -> Self {
         Self(Vec::new())
     }
@@ -36,7 +36,7 @@ impl Intervals {
         Self(joined)
     }
 
-    /// The intervals.
+    /// Start and end of each interval, ascending, in path time.
     pub fn as_slice(&self) -> &[[f64; 2]] {
         &self.0
     }
@@ -51,7 +51,7 @@ impl Intervals {
         self.0.iter().any(|&[start, end]| (start..=end).contains(&t))
     }
 
-    /// What both have.
+    /// The times that are in both.
     pub fn intersection(&self, other: &Self) -> Self {
         let pairs = self.0.iter().flat_map(|a| other.0.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
         Self::from_unsorted(pairs.collect())

@@ -31,7 +31,7 @@ pub enum Setting {
     AoError,
     /// Points of a texel on which its rays are spread.
     AoSupersample,
-    /// Threads that work.
+    /// Number of working threads.
     Threads,
     /// Memory that may be planned for.
     MaxMemory,
@@ -39,7 +39,7 @@ pub enum Setting {
     LeaveOut,
     /// Where on Earth the scene lies.
     Place,
-    /// The day.
+    /// The date of the sun's day.
     Date,
     /// The file of a keyed path.
     Path,

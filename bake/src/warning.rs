@@ -58,7 +58,7 @@ pub enum Warning {
     /// Charts take more pages than asked.
     #[error("the charts take {pages} pages of {page_size_texels} texels; larger pages take fewer")]
     ManyPages {
-        /// How many.
+        /// Number of pages that the charts take.
         pages: usize,
         /// Edge of each, in texels.
         page_size_texels: u32,
@@ -69,7 +69,7 @@ pub enum Warning {
          mesh {mesh} gets {reached_per_metre:.3}"
     )]
     LessDensity {
-        /// How many.
+        /// Number of meshes that get a lower density.
         meshes: usize,
         /// Edge of a page, in texels.
         page_size_texels: u32,
@@ -117,9 +117,9 @@ pub enum Warning {
         if *light == Light::Lamp { " of the lamp" } else { "" }
     )]
     Merged {
-        /// Of which light.
+        /// The light whose intervals did not fit.
         light: Light,
-        /// How many texels.
+        /// Number of texels with more intervals than the layers hold.
         texels: u64,
         /// Layers that were allowed.
         layer_cap: usize,
@@ -131,7 +131,7 @@ pub enum Warning {
     /// Rays ran out before the error was small enough.
     #[error("{texels} texels may still be off by more than {error} after {rays} rays of sky")]
     AmbientUnconverged {
-        /// How many texels.
+        /// Number of sides of texels whose error may be larger.
         texels: u64,
         /// Error of ambient occlusion asked for.
         error: f64,

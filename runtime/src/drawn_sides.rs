@@ -13,7 +13,7 @@ use sunbake::scene::{Alpha, Geometry, Material, Scene};
 pub struct DrawnSides {
     /// The side to which the normal points.
     pub front: bool,
-    /// The other side.
+    /// The side to which the reversed normal points.
     pub back: bool,
 }
 

@@ -1,6 +1,6 @@
 //! Pictures as numbers: a rectangle of pixels in row order.
 
-/// A picture.
+/// Pixels in rows, the upper left one first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Raster<T> {
     /// Width and height in pixels.
@@ -10,14 +10,14 @@ pub struct Raster<T> {
 }
 
 impl<T: Clone> Raster<T> {
-    /// All pixels alike.
+    /// A raster whose pixels are all `pixel`.
     pub fn filled(size: [u32; 2], pixel: T) -> Self {
         Self { size, pixels: vec![pixel; size[0] as usize * size[1] as usize] }
     }
 }
 
 impl<T> Raster<T> {
-    /// One pixel.
+    /// The pixel at a column and a row, both from 0.
     pub fn at(&self, column: u32, row: u32) -> &T {
         &self.pixels[row as usize * self.size[0] as usize + column as usize]
     }

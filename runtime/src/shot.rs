@@ -8,7 +8,7 @@ use sunbake::trace::Hit;
 
 /// A stage seen through a view. The surface at each pixel is found on first use, and serves every time of day.
 pub struct Shot<'a> {
-    /// The stage.
+    /// The stage that is looked at.
     pub stage: &'a Stage,
     /// Camera and picture size.
     pub view: View,

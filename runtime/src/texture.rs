@@ -13,7 +13,7 @@ pub struct MipChain {
     pub levels: Vec<Level>,
 }
 
-/// One mip level.
+/// A mip level, with half the texels of the one before along each axis.
 #[derive(Debug, Clone)]
 pub struct Level {
     /// In texels.

@@ -19,7 +19,7 @@ pub enum ShadowFilter {
     Penumbra,
 }
 
-/// What compares depths.
+/// What compares the stored depth with the receiver's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ShadowTap {
     /// The shader.
@@ -69,13 +69,13 @@ pub enum ShadowSource {
     Open,
     /// Shadow maps.
     Maps {
-        /// How many comparisons.
+        /// Number and pattern of comparisons.
         filter: ShadowFilter,
-        /// What compares.
+        /// What compares depths.
         tap: ShadowTap,
-        /// Which map.
+        /// Which of several maps is read.
         choice: ShadowMapChoice,
-        /// The bias.
+        /// What keeps a surface from shading itself.
         bias: ShadowBias,
         /// Margin at the border of a map, where another map is used, in texels.
         margin_texels: f32,

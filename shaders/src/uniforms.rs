@@ -119,7 +119,7 @@ pub struct ShadowMapUniform {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct ShadowMapsUniform {
-    /// Their matrices.
+    /// Matrix and origin of each map; those from `count` on are not read.
     pub maps: [ShadowMapUniform; MOST_SHADOW_MAPS],
     /// How many there are.
     pub count: u32,

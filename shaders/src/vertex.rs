@@ -7,7 +7,7 @@ use crate::SurfaceVariant;
 use bytemuck::{Pod, Zeroable};
 use std::fmt::Write;
 
-/// A vertex buffer.
+/// A vertex buffer, by what one of its entries holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stream {
     /// [`PositionVertex`].
@@ -82,7 +82,7 @@ pub struct TextureVertex {
     pub texels_per_metre: f32,
 }
 
-/// Vertex colours.
+/// An entry of [`Stream::Color`].
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct ColorVertex {

@@ -48,7 +48,7 @@ impl VolumeUse {
     }
 }
 
-/// Shadow volumes.
+/// WGSL that draws faces of volumes.
 pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) -> String {
     let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection"), wgsl!("volumes/points")].concat();
     match light {
@@ -99,7 +99,7 @@ impl HardLight {
     }
 }
 
-/// A point light.
+/// WGSL that adds a point light on surfaces.
 pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
     let mut text = on_surface(surface, &PageVariant::default());
     if matches!(light, HardLight::LampMask | HardLight::Lamp) {

@@ -49,7 +49,7 @@ impl Agreement {
         all
     }
 
-    /// Adds another's.
+    /// Sums counts, and keeps the larger distances.
     pub fn add(&mut self, other: &Self) {
         self.points += other.points;
         self.suns += other.suns;

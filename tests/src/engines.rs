@@ -8,7 +8,7 @@ use sunbake::visibility::{BisectEngine, Engine, ExactEngine, Intervals, RayEngin
 
 /// An engine and its claims.
 pub struct Candidate {
-    /// Makes it.
+    /// Makes an engine for the lanes of a path.
     pub make: for<'a> fn(&'a Tracer, &[SunPath]) -> Box<dyn Engine + 'a>,
     /// How far from an edge of brute force it may be wrong, in `t`; a lit or dark interval of twice that cannot be
     /// missed.
@@ -48,7 +48,7 @@ pub const EXACT: Candidate = Candidate {
 /// Whether the exact engine misses no interval, however short.
 pub const FINDS_ALL: bool = EXACT.blind_interval_t == 0.0;
 
-/// All of them.
+/// Every engine.
 pub const ALL: [Candidate; 3] = [RAYS, BISECT, EXACT];
 
 /// Suns of brute force in cases made by code.

@@ -29,11 +29,11 @@ use sunbake::visibility::{ExactEngine, Intervals, RayEngine, lit_at};
 
 /// A scene with what it takes to trace it.
 pub struct Traced {
-    /// The scene.
+    /// The scene itself.
     pub scene: Scene,
-    /// Its triangles.
+    /// The scene's triangles in bake space.
     pub geometry: Geometry,
-    /// Its hierarchy.
+    /// The ray tracer over these triangles.
     pub tracer: Tracer,
 }
 

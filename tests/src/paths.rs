@@ -57,7 +57,7 @@ pub fn arc_through(direction: DVec3, aside: DVec3, declination_deg: f64, hour_an
 pub struct Random(u64);
 
 impl Random {
-    /// Starts a sequence.
+    /// A sequence that depends on the seed alone.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }

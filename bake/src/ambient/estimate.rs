@@ -60,7 +60,7 @@ pub struct Estimates {
     pub unconverged: u64,
 }
 
-/// Estimates ambient light.
+/// Estimates ambient visibility, bent normals and sky coefficients of points.
 pub struct AmbientEngine<'a> {
     tracer: &'a Tracer,
     packet_tracer: PacketTracer<'a>,
@@ -72,7 +72,7 @@ pub struct AmbientEngine<'a> {
 }
 
 impl<'a> AmbientEngine<'a> {
-    /// Builds its hierarchy.
+    /// Builds the hierarchy of the packet tracer and the directions of all sequences.
     pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, settings: AmbientSettings) -> Self {
         let buried_test = BuriedTest::new(scene, geometry, tracer, settings.distance_m.is_none());
         let blocks = blocks(&settings);
@@ -92,7 +92,7 @@ impl<'a> AmbientEngine<'a> {
         }
     }
 
-    /// The settings.
+    /// Settings as they were given to [`AmbientEngine::new`].
     pub fn settings(&self) -> &AmbientSettings {
         &self.settings
     }

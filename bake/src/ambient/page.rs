@@ -8,7 +8,7 @@ use crate::atlas::{GutterTexel, PageSamples, PageSize};
 /// Ambient light of a page, as planes of numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AmbientPage {
-    /// Its size.
+    /// Width and height in texels; every plane has as many numbers as their product.
     pub size: PageSize,
     /// What fronts see.
     pub front: AmbientPlanes,
@@ -47,7 +47,7 @@ impl AmbientPlanes {
         self.planes_mut().for_each(|plane| plane[texel] = plane[source]);
     }
 
-    /// Every plane.
+    /// Visibility, bent normals and sky coefficients, as far as they were asked for.
     pub fn planes_mut(&mut self) -> impl Iterator<Item = &mut Vec<f32>> {
         std::iter::once(&mut self.visibility).chain(&mut self.bent).chain(&mut self.sky)
     }

@@ -50,15 +50,15 @@ pub struct Seams {
 /// Differences of filtered values across seams.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Mismatch {
-    /// Points compared.
+    /// Points on seams at which both sides were compared.
     pub points: u64,
     /// Of these, those whose sides are taken to differ in truth: they are not changed, and do not count below.
     pub differing: u64,
     /// Mean over all that count.
     pub mean: f64,
-    /// 99th percentile.
+    /// 99th percentile over all that count.
     pub p99: f64,
-    /// The largest.
+    /// The largest of all that count.
     pub worst: f64,
 }
 

@@ -10,9 +10,9 @@ pub enum AtlasError {
     BadSetting {
         /// Name of the setting.
         name: &'static str,
-        /// The value given.
+        /// The value given, as text.
         value: String,
-        /// Accepted values.
+        /// Accepted values, to be read after "must be".
         requirement: &'static str,
     },
     /// The requested density needs too many texels.

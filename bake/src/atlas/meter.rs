@@ -13,7 +13,7 @@ pub(super) struct ProgressMeter<'a> {
 }
 
 impl<'a> ProgressMeter<'a> {
-    /// Nothing reported yet.
+    /// Wraps a callback that takes the share of work done, 0 to 1, and returns false to stop.
     pub fn new(callback: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
         Self { callback, state: Mutex::new((0.0, true)) }
     }

@@ -41,7 +41,7 @@ pub(super) struct Packed {
 }
 
 impl PackShape {
-    /// A box.
+    /// A shape without gaps, in texels.
     pub fn rectangle(width: u32, height: u32, may_turn: bool) -> Self {
         Self { width, height, may_turn, outline: None }
     }

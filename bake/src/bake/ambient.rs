@@ -150,7 +150,7 @@ pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Wa
     unconverged.into_iter().chain((used < asked).then_some(Warning::FewerPoints { asked, used })).collect()
 }
 
-/// The manifest's entry.
+/// What `sunbake.json` says of ambient light: settings, rays, seams.
 pub(super) fn entry(request: &AmbientRequest, account: &AmbientAccount) -> AmbientEntry {
     let counted = |seams: &Mismatch| (seams.points - seams.differing) as f64;
     let all: f64 = account.seams.iter().map(|[_, after]| counted(after)).sum();

@@ -40,7 +40,7 @@ pub enum BakeError {
     /// A material to be left out is not there.
     #[error("the scene has no material named {name:?} to leave out; it has: {known}")]
     NoSuchMaterial {
-        /// The name given.
+        /// The name given with `--leave-out`.
         name: String,
         /// Names there are, as far as fits.
         known: String,
@@ -60,7 +60,7 @@ pub enum BakeError {
     /// More memory is needed than allowed.
     #[error("{what} needs about {needed_mib} MiB of memory and {allowed_mib} MiB are allowed")]
     Memory {
-        /// What needs it.
+        /// What needs the memory, to be read before "needs".
         what: String,
         /// Settings of which a smaller value makes it need less.
         smaller: Vec<Setting>,

@@ -29,7 +29,7 @@ pub enum CostError {
     /// A set's scene is not the scene that was baked.
     #[error("triangle {triangle} of the baked scene lies {apart_m} m from where it was: this is a defect of sunbake")]
     Moved {
-        /// Its index.
+        /// Index of the triangle in the scene that was read again.
         triangle: u32,
         /// Distance that it moved.
         apart_m: f64,

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 
 /// Most points at which whole bakes are compared.
 const MOST_POINTS: usize = 4096;
-/// Fewest points.
+/// Fewest points at which whole bakes are compared.
 const LEAST_POINTS: usize = 256;
 /// Share of the budget that finding the exact answers there may take.
 const TRUTH_SHARE: f64 = 0.1;
@@ -48,7 +48,7 @@ struct Job {
     row: Option<CostRow>,
 }
 
-/// What is measured.
+/// What a job measures: a whole bake, or one setting at texels.
 #[derive(Clone)]
 enum Measurement {
     Bake(Box<BakeSettings>),

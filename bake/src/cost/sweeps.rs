@@ -100,7 +100,7 @@ impl<'a> TexelSweeps<'a> {
         Some(sweeps)
     }
 
-    /// Texels measured on.
+    /// Number of texels that are measured.
     pub fn texel_count(&self) -> usize {
         self.points.len()
     }

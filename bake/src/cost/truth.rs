@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 /// Lanes across the disc. Near an edge they differ from the disc's true share by a thousandth on average.
 pub(super) const LANES: usize = 17;
-/// Rays of sky.
+/// Rays of sky per point of the exact answer.
 pub(super) const RAYS: u32 = 4096;
 /// Seed of the rays, which no bake uses.
 pub(super) const SEED: u32 = 0x7a57;

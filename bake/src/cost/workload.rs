@@ -128,7 +128,7 @@ impl Workload {
         (lanes, paths)
     }
 
-    /// A texel's point.
+    /// The surface point that a texel stands for, bake space.
     pub fn point(&self, sample: &Sample) -> SurfacePoint {
         atlas::surface_point(self.scene(), &self.geometry, sample)
     }

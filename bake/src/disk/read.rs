@@ -18,7 +18,7 @@ const MAX_PAGE_TEXELS: u32 = 16_384;
 /// [`crate::scene::load`] from [`BakedSet::scene_file`].
 #[derive(Debug, Clone)]
 pub struct BakedSet {
-    /// The folder.
+    /// The folder that holds `sunbake.json`.
     pub folder: PathBuf,
     /// The manifest as read.
     pub manifest: Manifest,
@@ -45,9 +45,9 @@ pub enum ReadError {
     /// A file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Io {
-        /// Which file.
+        /// The file that cannot be read.
         path: PathBuf,
-        /// The system's error.
+        /// Why the system could not read it.
         source: std::io::Error,
     },
     /// There is no manifest in the folder.
@@ -63,7 +63,7 @@ pub enum ReadError {
     /// The manifest is not valid.
     #[error("{}: {reason}; bake the scene again", path.display())]
     Manifest {
-        /// The manifest.
+        /// Path of `sunbake.json`.
         path: PathBuf,
         /// What is wrong, and where.
         reason: String,
@@ -71,9 +71,9 @@ pub enum ReadError {
     /// A texture does not match the manifest.
     #[error("{}: {reason}; bake the scene again", path.display())]
     Texture {
-        /// The texture.
+        /// Path of the texture file.
         path: PathBuf,
-        /// What is wrong.
+        /// What is wrong, to be read after a colon.
         reason: String,
     },
 }

@@ -22,7 +22,7 @@ pub const VERTICES_FILE: &str = "vertices.glb";
 /// Why a set could not be written.
 pub use super::folder::FolderError as WriteError;
 
-/// A set's folder.
+/// How a set's folder is recognised and named in messages.
 const KIND: FolderKind = FolderKind { marker: MANIFEST_FILE, what: "a baked set", noun: "set" };
 
 /// A set being written. If it is dropped before [`SetWriter::finish`], everything it wrote is removed.
@@ -38,7 +38,7 @@ impl SetWriter {
         Ok(Self { folder: FolderWriter::begin(target, force, KIND)?, bytes: 0 })
     }
 
-    /// Writes the scene.
+    /// Writes the bytes of `scene.glb`.
     pub fn write_scene(&mut self, glb: &[u8]) -> Result<(), WriteError> {
         self.write_file(SCENE_FILE, |file| file.write_all(glb))
     }

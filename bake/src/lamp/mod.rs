@@ -61,7 +61,7 @@ pub enum LampError {
     /// A position is not finite or too large.
     #[error("key {index} of the lamp's path (counted from 0) is at {position_m}: give metres from -1e9 to 1e9")]
     Position {
-        /// Which key.
+        /// Index of the key, from 0.
         index: usize,
         /// The position given, in metres.
         position_m: DVec3,
@@ -81,7 +81,7 @@ pub enum LampError {
         "the times of the lamp's keys must ascend from 0 to 1, and the one of key {index} (counted from 0) does not"
     )]
     Times {
-        /// Which key.
+        /// Index of the key, from 0.
         index: usize,
     },
     /// A size out of range.
@@ -89,7 +89,7 @@ pub enum LampError {
     Size {
         /// The file's name for it.
         name: &'static str,
-        /// What it is.
+        /// The value given, in the unit of its name.
         value: f64,
         /// What it must be.
         bound: &'static str,
@@ -190,7 +190,7 @@ impl LampPath {
 }
 
 impl LampSegment {
-    /// Length in metres.
+    /// Distance between its ends, in metres.
     pub fn length_m(&self) -> f64 {
         self.ends_m[0].distance(self.ends_m[1])
     }

@@ -154,7 +154,7 @@ pub enum Facts {
     Surfaces {
         /// How many are drawn.
         surfaces: usize,
-        /// Their triangles.
+        /// Number of triangles of these surfaces.
         triangles: usize,
     },
     /// Ambient light, if it is asked for.

@@ -7,16 +7,16 @@ use super::page::escape;
 pub struct Table {
     /// Caption above it; none where it is empty.
     pub caption: String,
-    /// The columns.
+    /// Headings and kinds of the columns, left to right.
     pub columns: Vec<Column>,
     /// The rows, in their initial order.
     pub rows: Vec<Row>,
 }
 
-/// A column.
+/// What is common to the cells of a column.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Column {
-    /// Its heading.
+    /// Heading as plain text.
     pub heading: String,
     /// What it means: the tooltip of the heading.
     pub explanation: String,
@@ -38,7 +38,7 @@ impl Column {
     }
 }
 
-/// A row.
+/// A row, with what its HTML says of it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Row {
     /// One per column; missing ones are empty.
@@ -54,7 +54,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A plain row.
+    /// A row that is neither highlighted nor greyed out.
     pub fn of(cells: Vec<Cell>) -> Self {
         Self { cells, ..Self::default() }
     }
@@ -63,14 +63,14 @@ impl Row {
 /// A cell: its HTML, and the number it is sorted by.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cell {
-    /// HTML.
+    /// Content, already escaped.
     html: String,
     /// The number it is sorted by. Without one it is sorted by its text, or in a column of numbers comes last.
     value: Option<f64>,
 }
 
 impl Cell {
-    /// Words.
+    /// A cell of plain text, which is escaped.
     pub fn text(text: &str) -> Self {
         Self { html: escape(text), value: None }
     }
@@ -85,7 +85,7 @@ impl Cell {
         Self { html, value: value.filter(|value| value.is_finite()) }
     }
 
-    /// Nothing.
+    /// A cell without text or number.
     pub fn empty() -> Self {
         Self::default()
     }

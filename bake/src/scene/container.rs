@@ -9,7 +9,7 @@ use std::{fs::File, io::Read, path::Path};
 
 /// The parts of a scene file.
 pub(super) struct Container<'a> {
-    /// The parsed JSON.
+    /// The JSON chunk of a GLB, or the whole of a `.gltf`.
     pub json: Value,
     /// The binary chunk, if any.
     pub binary: Option<&'a [u8]>,

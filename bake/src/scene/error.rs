@@ -25,7 +25,7 @@ pub enum LoadError {
     NotGltf {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// What was found instead of a glTF scene.
         cause: String,
     },
     /// The file is cut off, or its lengths contradict each other.
@@ -41,9 +41,9 @@ pub enum LoadError {
     Version {
         /// The file.
         path: PathBuf,
-        /// Its version.
+        /// The version that the file states.
         version: String,
-        /// What converts it.
+        /// How to get a file of version 2, as a sentence.
         advice: &'static str,
     },
     /// The JSON does not parse.
@@ -58,7 +58,7 @@ pub enum LoadError {
         line: usize,
         /// Column within the line, from 1.
         column: usize,
-        /// The parser's message.
+        /// What the parser says.
         cause: String,
     },
     /// The JSON parses but contradicts itself or the format.
@@ -75,9 +75,9 @@ pub enum LoadError {
     /// The file requires an extension that sunbake does not read.
     #[error("the scene requires the extension {extension}, which sunbake does not read; {advice}")]
     Extension {
-        /// Its name.
+        /// Name of the extension.
         extension: String,
-        /// What removes it.
+        /// How to get a file without it, as a sentence.
         advice: String,
     },
     /// The scene names a file that sunbake will not open.
@@ -88,9 +88,9 @@ pub enum LoadError {
     Outside {
         /// Where in the file.
         place: String,
-        /// What it names.
+        /// The URI that the file names.
         uri: String,
-        /// Why not.
+        /// Why it is not opened, to be read after the URI.
         reason: &'static str,
     },
     /// More memory would be needed than is allowed.
@@ -105,7 +105,7 @@ pub enum LoadError {
         needed_bytes: u64,
         /// How much of the limit is left.
         left_bytes: u64,
-        /// The limit.
+        /// Bytes that loading may take in all.
         limit_bytes: u64,
     },
     /// An image that an alpha mask needs cannot be used.
@@ -114,11 +114,11 @@ pub enum LoadError {
          so replace the image by a PNG, or set the material's alphaMode to OPAQUE"
     )]
     AlphaImage {
-        /// Which material.
+        /// Where in the file the material is.
         place: String,
-        /// Which image.
+        /// Where in the file the image is.
         image: String,
-        /// Why not.
+        /// Why the image cannot be used.
         cause: String,
     },
     /// Nodes form a cycle.
@@ -129,7 +129,7 @@ pub enum LoadError {
         /// The node that names it as its child.
         parent: usize,
     },
-    /// Nothing to bake.
+    /// The scene draws no triangle, so there is nothing to bake.
     #[error("{path} draws no triangles: {cause}", path = .path.display())]
     NoTriangles {
         /// The file.

@@ -145,7 +145,7 @@ pub enum ClockError {
     /// Not a time of day.
     #[error("'{0}' is not a time of day: give HH:MM from 00:00 to 24:00")]
     Time(String),
-    /// Not two times.
+    /// Not `HH:MM-HH:MM`.
     #[error("'{0}' is not a window of time: give HH:MM-HH:MM, for instance 08:00-18:30 (22:00-02:00 crosses midnight)")]
     Window(String),
 }

@@ -107,19 +107,19 @@ pub fn parse_utc_offset(text: &str) -> Result<f64, String> {
 /// Why a request is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DayError {
-    /// Not a latitude.
+    /// Degrees north that are not in -90..=90.
     #[error("latitude {0} is off the globe: give degrees north in -90..=90")]
     Latitude(f64),
-    /// Not a longitude.
+    /// Degrees east that are not in -180..=180.
     #[error("longitude {0} is off the globe: give degrees east in -180..=180")]
     Longitude(f64),
     /// Not a time zone.
     #[error("a UTC offset of {0} hours does not exist: give hours ahead of UTC in -12..=14, for instance 5.75 or 5:45")]
     UtcOffset(f64),
-    /// Not an angle.
+    /// Degrees that are not finite.
     #[error("north turned by {0} degrees is no direction: give a finite angle")]
     North(f64),
-    /// Not clock times.
+    /// Minutes that are not in 0..=1440, or less than a second apart.
     #[error(
         "no window runs from minute {0} to minute {1}: give minutes of local time in 0..=1440, at least a second apart"
     )]
@@ -132,7 +132,7 @@ pub enum DayError {
     DarkWindow {
         /// `HH:MM to HH:MM`.
         window: String,
-        /// The date.
+        /// The local date that was asked for.
         date: Date,
         /// `from HH:MM to HH:MM`.
         sun_up: String,

@@ -36,7 +36,7 @@ pub enum KeyedError {
     Size {
         /// The file's name for it.
         name: &'static str,
-        /// What it is.
+        /// The value in the file.
         value: f64,
         /// What it must be.
         bound: &'static str,

@@ -18,7 +18,7 @@ pub enum KeyError {
     /// A key is invalid.
     #[error("key {index} of the path (counted from 0) {problem}")]
     Key {
-        /// Which key.
+        /// Index of the key, from 0.
         index: usize,
         /// What is wrong, and what to give.
         problem: String,

@@ -49,7 +49,7 @@ pub enum PathError {
     /// A number is NaN or infinite, a vector is not unit or not orthogonal, or times do not ascend.
     #[error("arc {index} of the sun path is malformed: {reason}")]
     Arc {
-        /// Which arc.
+        /// Index of the arc, from 0.
         index: usize,
         /// What is wrong with it.
         reason: &'static str,
@@ -57,9 +57,9 @@ pub enum PathError {
     /// The angular radius or the duration is out of range.
     #[error("the sun path's {what} is {value}: it must be finite and {bound}")]
     Size {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
-        /// What it is.
+        /// The value given.
         value: f64,
         /// What it must be.
         bound: &'static str,

@@ -28,7 +28,7 @@ impl Direction {
         Self { unit, axes: [first, second, last], shear }
     }
 
-    /// The direction itself.
+    /// The vector of unit length that it was made of.
     pub fn unit(&self) -> DVec3 {
         self.unit
     }

@@ -268,13 +268,13 @@ pub fn explain(technique: &dyn Technique, effects: &DrawPlan) {
 
 /// What a frame is made of.
 pub enum Picture {
-    /// Linear light.
+    /// Linear light, before the tone curve.
     Color(Raster<glam::Vec3>),
     /// Share of the sun.
     Visibility(Raster<f32>),
 }
 
-/// Draws a frame.
+/// Draws what `output` asks for.
 pub fn draw(
     technique: &mut dyn Technique,
     shot: &Shot,

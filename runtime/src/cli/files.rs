@@ -45,7 +45,7 @@ pub fn write_color(path: &Path, light: &Raster<Vec3>, supersample: u32) -> Resul
     }
 }
 
-/// Writes visibility.
+/// Writes visibility as grey, averaged over blocks of `supersample` pixels.
 pub fn write_visibility(path: &Path, visibility: &Raster<f32>, supersample: u32) -> Result<(), Failure> {
     let visibility = visibility.reduced(supersample);
     match kind(path)? {

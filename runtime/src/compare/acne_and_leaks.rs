@@ -35,7 +35,7 @@ const SAME_PLANE: f64 = 0.9999;
 /// Errors and defects of a picture of visibility, against truth.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Defects {
-    /// Pixels compared.
+    /// Number of pixels compared.
     pub pixels: usize,
     /// Pixels with an error above a half, at least one pixel away from every edge of truth's picture.
     pub wrong: usize,
@@ -90,7 +90,7 @@ impl Defects {
         found
     }
 
-    /// Mean error.
+    /// Mean absolute error of visibility over the compared pixels.
     pub fn mean_error(&self) -> f64 {
         self.error / self.pixels.max(1) as f64
     }

@@ -17,7 +17,7 @@ pub(super) const EDGE_STEP: f32 = 4.0 / 255.0;
 /// How far two pictures agree, pixel by pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Pixels compared.
+    /// Number of pixels compared.
     pub pixels: usize,
     /// Pixels that differ by no more than the tolerance.
     pub within: usize,

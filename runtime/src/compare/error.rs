@@ -24,9 +24,9 @@ pub enum CompareError {
         "{file} is not the scene that the set was baked of: its SHA-256 is {found}, and was {baked}; bake it again"
     )]
     OtherScene {
-        /// The scene's file.
+        /// Path of the scene file.
         file: String,
-        /// Its hash.
+        /// SHA-256 of the scene file now.
         found: String,
         /// The hash of what was baked.
         baked: String,
@@ -64,9 +64,9 @@ pub enum CompareError {
     /// The reference cannot be drawn.
     #[error("the reference {name} cannot be drawn: {reason}")]
     Reference {
-        /// Its name.
+        /// Name of the technique.
         name: String,
-        /// Why.
+        /// Why it cannot be drawn.
         reason: String,
     },
     /// The listener asked to stop.

@@ -63,7 +63,7 @@ impl Limited {
 /// The most that is allowed of something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// What is limited.
+    /// The number that the limit is on.
     pub what: Limited,
     /// The largest value allowed, in the unit of `what`.
     pub most: f64,

@@ -35,7 +35,7 @@ const RAYS_PER_CIRCLE: usize = 16;
 /// How far a hard mask agrees with hard truth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MaskAgreement {
-    /// Pixels compared.
+    /// Number of pixels compared.
     pub pixels: usize,
     /// Pixels in the band.
     pub in_band: usize,

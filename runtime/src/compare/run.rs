@@ -15,9 +15,9 @@ const ROUNDS_ON_CPU: u32 = 1;
 
 /// What a comparison found.
 pub struct Compared {
-    /// The numbers.
+    /// The numbers, as they are written to `report.json`.
     pub report: Report,
-    /// The pictures.
+    /// The pictures that the numbers are of.
     pub outcome: Outcome,
 }
 

@@ -86,7 +86,7 @@ impl Tally {
         self.not_numbers += other.not_numbers;
     }
 
-    /// The numbers.
+    /// Means and extremes of all pixels that were added.
     pub fn score(&self) -> Score {
         let count = self.errors.len();
         let mean = |(sum, count): (f64, u64)| if count == 0 { 0.0 } else { sum / count as f64 };

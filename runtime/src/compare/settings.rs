@@ -11,7 +11,7 @@ use sunbake::settings::SunRequest;
 /// Everything that a comparison is told.
 #[derive(Debug, Clone)]
 pub struct CompareSettings {
-    /// What is drawn.
+    /// A baked set, or a scene to be baked.
     pub source: CompareSource,
     /// Names of techniques, or parts of their names ([`super::selected`]). None: all that the source allows.
     pub techniques: Vec<String>,
@@ -33,12 +33,12 @@ pub struct CompareSettings {
     pub threads: usize,
 }
 
-/// What is drawn.
+/// What techniques are compared on.
 #[derive(Debug, Clone)]
 pub enum CompareSource {
     /// A baked set, compared as it is; fewer bits and lanes are made of those that it has.
     Set {
-        /// Its folder.
+        /// The folder that holds `sunbake.json`.
         folder: PathBuf,
         /// The scene that it was baked of, to make sure that it still is that one.
         scene: Option<PathBuf>,

@@ -59,15 +59,15 @@ pub enum TechniqueNameError {
         known.join(", ")
     )]
     Unknown {
-        /// The name.
+        /// The name given.
         name: String,
-        /// Names there are.
+        /// All names that the source allows.
         known: Vec<String>,
     },
     /// One technique was asked for, and several have it.
     #[error("`{name}` is several techniques: {}", found.join(", "))]
     Several {
-        /// The name.
+        /// The name given.
         name: String,
         /// Names of the techniques.
         found: Vec<String>,

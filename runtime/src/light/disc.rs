@@ -5,7 +5,7 @@ use glam::DVec3;
 /// The angle between successive points of the spiral: a full turn over the square of the golden ratio.
 pub const GOLDEN_ANGLE_RAD: f64 = 2.399_963_229_728_653;
 
-/// The sun's disc.
+/// The sun's disc: directions within an angle of its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunDisc {
     /// Unit vector towards the sun's centre.

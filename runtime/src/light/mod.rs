@@ -53,7 +53,7 @@ pub struct Moment {
     pub sun_radius_rad: f32,
     /// One over the sun's angular diameter; very large for a point.
     pub inverse_angular_diameter: f32,
-    /// The light.
+    /// Light of sun, sky and ground.
     pub daylight: Daylight,
     /// The lamp in the scene, if there is one.
     pub lamp: Option<LampMoment>,

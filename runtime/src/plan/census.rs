@@ -5,9 +5,9 @@ use serde::Serialize;
 /// Counts of what a renderer holds, or is to hold. Zero where there is none.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Census {
-    /// Passes a frame.
+    /// Number of passes per frame.
     pub passes: usize,
-    /// Pipelines.
+    /// Number of render pipelines.
     pub pipelines: usize,
     /// Pipelines that test alpha.
     pub alpha_test_pipelines: usize,
@@ -21,9 +21,9 @@ pub struct Census {
     pub ambient_textures: usize,
     /// Bindings of the sky in spherical harmonics: one where a page wants it.
     pub sky_bindings: usize,
-    /// Base colour textures.
+    /// Number of base colour textures.
     pub base_color_textures: usize,
-    /// Vertex buffers.
+    /// Number of vertex buffers.
     pub vertex_buffers: usize,
     /// Bind groups that are kept from frame to frame.
     pub bind_groups: usize,

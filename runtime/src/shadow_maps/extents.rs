@@ -16,7 +16,7 @@ pub const HEADROOM: f64 = 1.0 / 256.0;
 /// Casters and receivers of a stage, gathered once.
 #[derive(Debug, Clone)]
 pub struct ShadowScene {
-    /// Its ground.
+    /// The lowest large level plane, which may be absent.
     pub ground: Ground,
     /// Corners of casting triangles.
     casters_m: Vec<Vec3>,
@@ -88,9 +88,9 @@ fn along(axes: &LightAxes, points_m: &[Vec3]) -> LightBounds {
 /// How far casters and receivers reach along a light's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extents {
-    /// The light's frame.
+    /// Axes across the light and towards it.
     pub axes: LightAxes,
-    /// Bounds of casters.
+    /// Bounds of casters along the axes.
     pub casters: LightBounds,
     /// Bounds of drawn triangles.
     pub receivers: LightBounds,

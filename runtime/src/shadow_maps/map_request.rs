@@ -11,7 +11,7 @@ const FINE_PX: f64 = 0.5;
 
 /// What the maps of a view must hold, and how large they are.
 pub struct MapRequest<'a> {
-    /// The view.
+    /// The camera's view that the maps serve.
     pub view: &'a View,
     /// How far casters and receivers reach.
     pub extents: &'a Extents,

@@ -65,7 +65,7 @@ pub enum Variant {
 }
 
 impl Variant {
-    /// All of them.
+    /// Every variant.
     pub const ALL: [Self; 10] = [
         Self::Plain,
         Self::Compare,

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, DVec4, Vec4Swizzles};
 
-/// A convex body.
+/// A convex body, by the corners of its faces.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Polyhedron {
     faces: Vec<Vec<DVec3>>,

@@ -45,9 +45,9 @@ impl LightAxes {
 /// Least and greatest coordinates along a light's axes; the third is height towards the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightBounds {
-    /// Least.
+    /// Least coordinate along each axis, metres.
     pub low: DVec3,
-    /// Greatest.
+    /// Greatest coordinate along each axis, metres.
     pub high: DVec3,
 }
 
@@ -74,7 +74,7 @@ impl LightBounds {
 /// A map's matrix and size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapProjection {
-    /// The light's frame.
+    /// Axes across the light and towards it.
     pub axes: LightAxes,
     /// The origin that points are relative to, bake space, in metres; representable in `f32`.
     pub origin_m: DVec3,

@@ -6,11 +6,11 @@ use crate::light::codes_from_display;
 use crate::texture::linear_from_srgb;
 use glam::Vec3;
 
-/// Background of sheets.
+/// Colour of the background, sRGB.
 pub const PAPER: [u8; 3] = [24, 24, 26];
-/// Text.
+/// Colour of text, sRGB.
 pub const INK: [u8; 3] = [236, 232, 224];
-/// Less important text.
+/// Colour of less important text, sRGB.
 pub const QUIET_INK: [u8; 3] = [156, 152, 146];
 
 /// A sheet while it is drawn.
@@ -19,12 +19,12 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// An empty sheet.
+    /// A sheet that is all background, in pixels.
     pub fn new(size: [u32; 2]) -> Self {
         Self { picture: Raster::filled(size, PAPER) }
     }
 
-    /// The finished sheet.
+    /// The sheet as it has been drawn.
     pub fn finish(self) -> Raster<[u8; 3]> {
         self.picture
     }

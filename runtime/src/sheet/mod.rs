@@ -56,7 +56,7 @@ pub struct PictureTable {
 const LINE: u32 = CELL[1] * SCALE + GAP;
 
 impl PictureTable {
-    /// Draws the table.
+    /// Draws names, pictures and legend.
     pub fn draw(&self) -> Raster<[u8; 3]> {
         let [width, height] = self.rows.iter().flat_map(|(_, row)| row).map(|p| p.size).next().unwrap_or([1, 1]);
         let columns = self.heads.len() as u32;

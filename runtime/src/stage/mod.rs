@@ -19,7 +19,7 @@ use sunbake::trace::{Direction, Hit, Tracer};
 
 /// A scene, its maps, and what drawing needs beside them.
 pub struct Stage {
-    /// The scene.
+    /// The glTF scene, with the instances and materials that the maps are of.
     pub scene: Scene,
     /// Its triangles in bake space.
     pub geometry: Geometry,
@@ -50,9 +50,9 @@ pub struct Chart {
     pub page: u32,
     /// 0 or 1: which of [`Mesh::texcoords`].
     pub uv_set: usize,
-    /// In page coordinates.
+    /// Page coordinates per texture coordinate.
     pub scale: Vec2,
-    /// In page coordinates.
+    /// Page coordinates of the texture coordinate (0, 0).
     pub offset: Vec2,
 }
 

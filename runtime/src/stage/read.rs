@@ -28,7 +28,7 @@ pub enum StageError {
         sha256.as_deref().unwrap_or("not kept")
     )]
     NoScene {
-        /// Where it was.
+        /// Path where the file was expected.
         file: String,
         /// The SHA-256 that the set recorded, if any.
         sha256: Option<String>,
@@ -38,7 +38,7 @@ pub enum StageError {
         "{file} is not the scene that the set was baked with: its SHA-256 is {found}, and was {baked}; bake it again"
     )]
     Changed {
-        /// Which file.
+        /// Name of the file that changed.
         file: String,
         /// Its SHA-256 now.
         found: String,
@@ -48,7 +48,7 @@ pub enum StageError {
     /// The manifest and the scene do not agree.
     #[error("the set's scene and its manifest disagree: {reason}; bake the scene again")]
     Mismatch {
-        /// Where they disagree.
+        /// What they disagree about.
         reason: String,
     },
 }

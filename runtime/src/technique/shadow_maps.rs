@@ -27,7 +27,7 @@ impl<'g> ShadowMaps<'g> {
         Ok(Self { renderer: MapRenderer::new(gpu, stage, settings)?, settings })
     }
 
-    /// Its settings.
+    /// Settings as they were given to [`ShadowMaps::new`].
     pub fn settings(&self) -> &MapSettings {
         &self.settings
     }
@@ -37,7 +37,7 @@ impl<'g> ShadowMaps<'g> {
         self.renderer.report()
     }
 
-    /// The renderer.
+    /// The renderer that draws the maps.
     pub fn renderer(&self) -> &MapRenderer<'g> {
         &self.renderer
     }

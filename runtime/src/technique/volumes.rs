@@ -37,7 +37,7 @@ impl<'g> Volumes<'g> {
         self.renderer.caster_counts()
     }
 
-    /// The renderer.
+    /// The renderer that draws the volumes.
     pub fn renderer(&mut self) -> &mut VolumeRenderer<'g> {
         &mut self.renderer
     }

@@ -28,7 +28,7 @@ pub struct ReferenceShot<'a> {
 
 /// Moments of a day, each seen by several cameras.
 pub struct ReferenceDay<'a> {
-    /// The stage.
+    /// The stage that is looked at.
     pub stage: &'a Stage,
     /// Moments, with the shots of each.
     pub all: Vec<(Moment, Vec<ReferenceShot<'a>>)>,

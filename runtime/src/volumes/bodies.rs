@@ -37,7 +37,7 @@ pub enum Shape {
     Solid,
     /// It bounds a solid, front faces inside.
     InsideOut,
-    /// Anything else.
+    /// Not closed, or inside out in part.
     Open,
 }
 

@@ -34,7 +34,7 @@ pub struct Casters {
     pub first_use: Vec<u32>,
     /// Triangles along each edge.
     pub uses: Vec<EdgeUse>,
-    /// The casters.
+    /// The casters themselves; each has ranges of the lists above.
     pub all: Vec<Caster>,
     /// Counts of what was found.
     pub counts: CasterCounts,

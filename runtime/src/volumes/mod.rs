@@ -58,7 +58,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// All of them.
+    /// Every mode.
     pub const ALL: [Self; 5] = [Self::Planned, Self::ZFail, Self::ZPass, Self::Triangles, Self::Gpu];
 }
 
@@ -109,7 +109,7 @@ impl Default for VolumeOptimizations {
 }
 
 impl VolumeOptimizations {
-    /// None of them.
+    /// Everything is drawn, and nothing is kept.
     pub const NONE: Self = Self {
         view_culling: false,
         receiver_culling: false,

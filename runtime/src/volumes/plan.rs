@@ -55,7 +55,7 @@ pub struct FramePlan {
 /// Counts of what was decided.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct PlanCounts {
-    /// Casters.
+    /// Number of casters in all.
     pub casters: usize,
     /// Left out: they are out of the light's range, or cast nothing in this light.
     pub casting_nothing: usize,

@@ -49,7 +49,7 @@ pub struct Volumes {
 /// Where a caster's volume lies in [`Volumes::indices`].
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Parts {
-    /// Walls.
+    /// Walls along the edges.
     pub walls: Range<u32>,
     /// Caps at the casters themselves.
     pub caps: Range<u32>,

@@ -32,7 +32,7 @@ const SMALL: f64 = 12.5;
 /// What plotters divides a size by before it writes it into a file.
 const SHRINK: f64 = 1.24;
 
-/// Both scales.
+/// The scales of both axes, in pixels of the picture.
 pub(super) struct Frame {
     pub x: Scale,
     pub y: Scale,
@@ -48,7 +48,7 @@ pub(super) fn upwards() -> [f64; 2] {
     [f64::from(SIZE[1] as i32 - MARGIN[3]), f64::from(MARGIN[1])]
 }
 
-/// A point's place.
+/// Where a point lies in the picture, in pixels; hollow where a coordinate stands for zero or less.
 #[derive(Clone, Copy)]
 struct Spot {
     at: (i32, i32),

@@ -10,7 +10,7 @@ mod labels;
 
 use axis::Scale;
 
-/// A plot.
+/// Points over two axes, drawn as SVG.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {
     /// Title above the plot.
@@ -25,7 +25,7 @@ pub struct Plot {
     pub mark: Option<Point>,
 }
 
-/// An axis.
+/// An axis, with its label and its kind of scale.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Axis {
     /// Label with the unit.
@@ -53,16 +53,16 @@ pub struct Series {
     pub name: String,
     /// Whether a line joins the points, in their order.
     pub is_joined: bool,
-    /// The points.
+    /// The points, in the order in which a line joins them.
     pub points: Vec<Point>,
 }
 
-/// A point.
+/// A pair of values with its label.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Point {
-    /// To the right.
+    /// Value on the horizontal axis; a point without a number is not drawn.
     pub x: f64,
-    /// Upwards.
+    /// Value on the vertical axis; a point without a number is not drawn.
     pub y: f64,
     /// Its name, shown where there is space, and as a tooltip.
     pub label: String,

@@ -137,7 +137,7 @@ pub(super) fn texel_of(coordinate: f64) -> i64 {
     whole - i64::from((whole as f64) > coordinate)
 }
 
-/// A quadratic's value.
+/// `a s^2 + b s + c`.
 #[inline]
 pub(super) fn value([a, b, c]: [f64; 3], s: f64) -> f64 {
     (a * s + b) * s + c

@@ -46,7 +46,7 @@ pub(super) struct Follower<'a> {
 /// One curve being followed.
 #[derive(Clone, Copy)]
 struct CurveWalk {
-    /// Its index.
+    /// Index in [`Follower::curves`].
     curve: usize,
     /// How far along it.
     at: f64,

@@ -36,7 +36,7 @@ impl SeedBatches {
         self.count = 0;
     }
 
-    /// The triangles.
+    /// Batches in the order in which their triangles closed gaps.
     pub fn batches(&self) -> &[TriangleBatch] {
         &self.batches[..self.count]
     }

@@ -78,7 +78,7 @@ impl TriangleBatch {
         );
     }
 
-    /// A triangle's corners.
+    /// Corners of the triangle at an index, in the frame that the batch is in.
     pub fn corners_of(&self, index: usize) -> [DVec3; 3] {
         self.corners.each_ref().map(|[x, y, z]| DVec3::new(x[index], y[index], z[index]))
     }

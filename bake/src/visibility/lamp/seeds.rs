@@ -9,7 +9,7 @@ const PATIENCE: u32 = 6;
 #[derive(Debug, Default)]
 pub(super) struct SeedTriangles {
     triangles: Vec<(u32, u32)>,
-    /// Numbers the points.
+    /// Number of the current point, from 1.
     now: u32,
 }
 

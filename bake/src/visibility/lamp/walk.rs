@@ -85,7 +85,7 @@ impl Tree {
 
 /// The triangle that a point and a segment span, and which part of it is open.
 pub(super) struct PointSegmentTriangle {
-    /// The point.
+    /// The point, tracer space.
     origin: DVec3,
     ends: [DVec3; 2],
     /// Box of the triangle, relative to the point.

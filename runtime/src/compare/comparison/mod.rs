@@ -40,7 +40,7 @@ pub struct Comparison<'a> {
     pub gpu: Option<&'a Gpu>,
     /// Techniques to compare.
     pub techniques: &'a [TechniqueSpec],
-    /// The reference.
+    /// What every technique is compared with.
     pub against: TechniqueSpec,
     /// Cameras, all with pictures of one size.
     pub views: &'a [View],
@@ -62,7 +62,7 @@ pub struct Outcome {
     pub visibility: Vec<Vec<Raster<u8>>>,
     /// Techniques that could not be drawn.
     pub left_out: Vec<LeftOut>,
-    /// The reference.
+    /// The reference with its own cost and noise.
     pub reference: ReferenceEntry,
 }
 

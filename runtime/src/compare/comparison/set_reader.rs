@@ -13,7 +13,7 @@ use sunbake_shaders::AmbientModel;
 /// A set on disk, from which stages are read.
 #[derive(Debug, Clone)]
 pub struct SetOnDisk {
-    /// Its folder.
+    /// The folder that holds `sunbake.json`.
     pub folder: PathBuf,
     /// What the report says of it.
     pub entry: SetEntry,

@@ -32,17 +32,17 @@ pub struct Report {
     pub version: u32,
     /// Program and version that made it.
     pub generator: String,
-    /// What was drawn.
+    /// The scene that was drawn.
     pub scene: SceneEntry,
-    /// What drew it.
+    /// The machine that drew it.
     pub machine: MachineEntry,
     /// What every technique is compared with.
     pub reference: ReferenceEntry,
     /// Width and height of every picture, in pixels.
     pub size: [u32; 2],
-    /// Cameras.
+    /// Cameras that every technique was drawn from.
     pub cameras: Vec<CameraEntry>,
-    /// Times of day.
+    /// Times of day that every technique was drawn at.
     pub times: Vec<TimeEntry>,
     /// How often each picture was drawn; the least of its times counts.
     pub rounds: u32,
@@ -58,7 +58,7 @@ pub struct Report {
     pub notes: Vec<String>,
 }
 
-/// The scene.
+/// The scene, with the sets that were baked of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SceneEntry {
@@ -72,7 +72,7 @@ pub struct SceneEntry {
     pub sets: Vec<SetEntry>,
 }
 
-/// A baked set.
+/// A baked set that techniques played back.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct SetEntry {
@@ -114,7 +114,7 @@ pub struct MachineEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct ReferenceEntry {
-    /// Its name.
+    /// Name of the technique that is the reference.
     pub name: String,
     /// Milliseconds per frame, without finding which surface each pixel shows.
     pub frame_ms: f64,
@@ -123,11 +123,11 @@ pub struct ReferenceEntry {
     pub noise: Option<f64>,
 }
 
-/// A camera.
+/// A camera that frames were drawn from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct CameraEntry {
-    /// Its name.
+    /// The camera's name in the scene or, without one, where it looks from.
     pub name: String,
     /// Where it stands, world space, metres.
     pub eye_m: [f64; 3],
@@ -238,9 +238,9 @@ pub struct FrameEntry {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LeftOut {
-    /// Its name.
+    /// Name of the technique.
     pub name: String,
-    /// Why.
+    /// Why it was not compared, as a sentence.
     pub reason: String,
 }
 
@@ -248,7 +248,7 @@ pub struct LeftOut {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct LimitEntry {
-    /// What is limited.
+    /// The number that is limited, as `--fail-above` names it.
     pub key: String,
     /// The largest value allowed.
     pub limit: f64,
@@ -262,9 +262,9 @@ pub struct LimitEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct AboveLimit {
-    /// Its name.
+    /// Name of the technique.
     pub name: String,
-    /// Its value.
+    /// The value that is above the limit.
     pub value: f64,
 }
 

@@ -9,7 +9,7 @@ use sunbake::report::{escape, plain, with_unit};
 
 /// The viewer's controls, and the element that shows its pictures.
 const VIEWER: &str = include_str!("viewer.html");
-/// Its style.
+/// Style sheet, which the page holds inline.
 const STYLE: &str = include_str!("viewer.css");
 /// Its script, one module in three files.
 const SCRIPTS: [&str; 3] = [include_str!("pixels.js"), include_str!("viewer.js"), include_str!("controls.js")];

@@ -7,11 +7,11 @@ use super::{Batch, BatchKey, Output, SceneOnGpu, depth_key};
 
 /// What the passes of a frame draw into, and what counts and times them.
 pub struct FrameTarget<'a> {
-    /// What it shows.
+    /// Lit scene, or visibility of one light.
     pub output: Output,
-    /// The picture.
+    /// The colour target of the frame's passes.
     pub picture: PictureTarget<'a>,
-    /// Its depths.
+    /// The depth buffer of the frame's passes.
     pub depth: DepthBuffer,
     /// Counts and times passes.
     pub clock: &'a PassClock,

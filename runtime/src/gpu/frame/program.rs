@@ -7,7 +7,7 @@ use sunbake_shaders::{Attribute, Format, Stream, SurfaceVariant};
 
 /// A pipeline with the vertex streams that it reads, in the order of their locations in the pipeline.
 pub struct Program {
-    /// The pipeline.
+    /// Compiled for one format of the picture.
     pub pipeline: wgpu::RenderPipeline,
     /// What to set as vertex buffers 0, 1, and so on.
     pub streams: Vec<Stream>,

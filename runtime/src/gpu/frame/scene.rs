@@ -15,17 +15,17 @@ use sunbake_shaders::{PageVariant, Stream};
 
 /// Surfaces, their maps and their textures: built once per stage.
 pub struct SceneOnGpu {
-    /// What was planned.
+    /// What the stage calls for.
     pub needs: SceneNeeds,
-    /// What is drawn.
+    /// Draws of visible surfaces.
     pub batches: Vec<Batch>,
     /// Casters that are not drawn; only with a ground.
     pub hidden: Vec<Batch>,
-    /// Vertex buffers.
+    /// Vertex buffers, one for each stream in use.
     pub streams: BTreeMap<Stream, wgpu::Buffer>,
     /// Textures of each atlas page.
     pub pages: Vec<PageTextures>,
-    /// Base colour textures.
+    /// Base colour textures that some surface is drawn with.
     pub textures: BaseTextures,
     /// The frame's own buffers.
     pub frame: FrameBindings,

@@ -4,7 +4,7 @@ use super::Output;
 use crate::gpu::device::{Gpu, GpuError};
 use std::collections::BTreeMap;
 
-/// Format of depths.
+/// Format of depths where no stencil is needed.
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Format of depths with a stencil, in which shadow volumes are counted.
 pub const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32FloatStencil8;
@@ -40,7 +40,7 @@ pub struct OwnPicture {
 }
 
 impl OwnPicture {
-    /// To draw into.
+    /// The view that passes draw into.
     pub fn target(&self) -> PictureTarget<'_> {
         PictureTarget { view: &self.view, format: self.texture.format() }
     }
@@ -91,7 +91,7 @@ pub struct OwnTargets {
 }
 
 impl OwnTargets {
-    /// None yet.
+    /// Holds no texture until one is asked for.
     pub fn new(depth_format: wgpu::TextureFormat) -> Self {
         Self { depth_format, pictures: BTreeMap::new(), depths: BTreeMap::new() }
     }

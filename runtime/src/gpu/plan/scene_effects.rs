@@ -16,14 +16,14 @@ pub fn of_maps_alone(stage: &Stage) -> (Vec<DrawNeed>, u64) {
 
 /// Decides what a scene calls for. Each effect takes what `totals` is less for a scene without it.
 pub struct SceneEffects<'a> {
-    /// The scene.
+    /// What the scene calls for.
     pub scene: &'a SceneNeeds,
     /// What a technique builds for a scene.
     pub totals: &'a dyn Fn(&SceneNeeds) -> Census,
 }
 
 impl SceneEffects<'_> {
-    /// All of them.
+    /// Decisions about every effect of the scene itself.
     pub fn all(&self) -> Vec<DrawNeed> {
         let surfaces = [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided()];
         surfaces.into_iter().chain(self.of_times()).chain(self.of_ambient()).chain([self.pages()]).collect()

@@ -13,11 +13,11 @@ use sunbake_shaders::{AmbientModel, PageVariant, Stream};
 /// What surfaces, their maps and their textures call for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneNeeds {
-    /// What is drawn.
+    /// Keys of the draws of visible surfaces.
     pub batches: BTreeSet<BatchKey>,
     /// Casters that are not drawn; only with a ground.
     pub hidden: BTreeSet<BatchKey>,
-    /// Atlas pages.
+    /// What each atlas page calls for.
     pub pages: Vec<PageNeeds>,
     /// Bits of a stored time.
     pub bits: u32,
@@ -30,7 +30,7 @@ pub struct SceneNeeds {
 pub struct PageNeeds {
     /// What programs must know of it.
     pub variant: PageVariant,
-    /// Its texels.
+    /// Texels of the page.
     pub texels: u64,
 }
 
@@ -80,7 +80,7 @@ impl SceneNeeds {
         self.surfaces().filter_map(|key| key.texture).collect()
     }
 
-    /// Vertex buffers.
+    /// Vertex streams in use.
     pub fn streams(&self) -> BTreeSet<Stream> {
         let of_key = |key: &BatchKey| {
             let texture = key.surface.is_textured.then_some(Stream::Texture);

@@ -21,7 +21,7 @@ pub struct MapDecisions<'a> {
 }
 
 impl MapDecisions<'_> {
-    /// All of them.
+    /// Decisions about every effect of shadow maps.
     pub fn all(&self) -> Vec<DrawNeed> {
         vec![
             self.shadows(),

@@ -38,7 +38,7 @@ use textures::{CasterMask, DepthMaps};
 /// What a frame was made of.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct MapReport {
-    /// Passes.
+    /// Number of passes, those of the maps included.
     pub passes: usize,
     /// Maps that were read.
     pub maps: usize,

@@ -8,7 +8,7 @@ use crate::gpu::frame::{Batch, Phase, PictureTarget, Program, begin_color_pass, 
 use crate::shadow_maps::{MapProjection, Variant};
 
 impl MapRenderer<'_> {
-    /// Casters.
+    /// Batches that cast: all, or all but the ground.
     fn casters(&self) -> impl Iterator<Item = &Batch> {
         let casts = self.shadow_scene.ground.casts;
         self.scene.batches.iter().chain(&self.scene.hidden).filter(move |batch| casts || !batch.key.is_ground)

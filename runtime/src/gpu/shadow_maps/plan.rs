@@ -29,7 +29,7 @@ pub enum SunShading {
 /// What a picture calls for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapNeeds {
-    /// What it shows.
+    /// Lit scene, or visibility of one light.
     pub output: Output,
     /// How maps are made and read.
     pub settings: MapSettings,
@@ -80,7 +80,7 @@ impl MapNeeds {
         }
     }
 
-    /// Casters.
+    /// Keys of batches that cast: all, or all but the ground.
     fn casters<'a>(&self, scene: &'a SceneNeeds) -> impl Iterator<Item = BatchKey> + 'a {
         let casts = self.ground_casts;
         scene.surfaces().filter(move |key| casts || !key.is_ground).map(caster_key)
@@ -121,7 +121,7 @@ impl MapNeeds {
         MapProgram::Surface(self.output, sun, BatchKey { is_ground: false, ..key })
     }
 
-    /// All programs.
+    /// Keys of every program of the picture.
     pub fn programs(&self, scene: &SceneNeeds) -> BTreeSet<MapProgram> {
         let of_batch = |key: &BatchKey| [MapProgram::Depth(depth_key(key)), self.surface_program_key(scene, key)];
         let mut all: BTreeSet<MapProgram> = scene.batches.iter().flat_map(of_batch).collect();

@@ -10,7 +10,7 @@ use crate::gpu::frame::{
 use crate::shadow_maps::Variant;
 use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowMapChoice, SurfaceVariant};
 
-/// A pipeline.
+/// What tells pipelines of shadow maps apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MapProgram {
     /// Depths as the camera sees them.
@@ -71,7 +71,7 @@ pub fn caster_key(key: &BatchKey) -> BatchKey {
 }
 
 impl MapRenderer<'_> {
-    /// Makes a program.
+    /// Compiles the pipeline of a key.
     pub(super) fn program(&self, key: &MapProgram, format: wgpu::TextureFormat) -> Program {
         let gpu = self.gpu;
         match key {

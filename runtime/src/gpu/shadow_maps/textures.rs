@@ -3,7 +3,7 @@
 use crate::gpu::device::{Gpu, GpuError};
 use crate::gpu::frame::{DEPTH_FORMAT, texture};
 
-/// Format of masks.
+/// Format of masks of casters: 1 is lit.
 pub const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// Usage of both.

@@ -17,7 +17,7 @@ pub struct VolumeDecisions<'a> {
 }
 
 impl VolumeDecisions<'_> {
-    /// All of them.
+    /// Decisions about every effect of shadow volumes.
     pub fn all(&self) -> Vec<DrawNeed> {
         vec![
             self.sun(),

@@ -12,7 +12,7 @@ pub struct FaceDraw {
     pub part: Part,
     /// Vertices, or indices where the CPU listed them.
     pub corners: Range<u32>,
-    /// Instances.
+    /// Instances: as many walls as an edge may need where the vertex shader finds silhouettes, else 1.
     pub instances: u32,
 }
 
@@ -40,7 +40,7 @@ impl VolumeDraws {
         })
     }
 
-    /// Number of triangles.
+    /// Number of triangles, all instances counted.
     pub fn triangles(&self) -> usize {
         self.all().map(|(draw, _)| draw.corners.len() * draw.instances as usize).sum::<usize>() / 3
     }

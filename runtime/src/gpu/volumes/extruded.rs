@@ -18,7 +18,7 @@ const MOST_TIMES: f64 = 1e4;
 
 /// The volumes of a light.
 pub struct Extruded {
-    /// The light.
+    /// The light that these volumes are of.
     pub light: Light,
     /// What the light makes of the triangles.
     pub facings: Facings,

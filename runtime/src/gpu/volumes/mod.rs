@@ -144,7 +144,7 @@ impl<'g> VolumeRenderer<'g> {
         self.extruded = [None, None];
     }
 
-    /// The casters.
+    /// The welded and sorted casters of the stage.
     pub fn casters(&self) -> &Casters {
         &self.casters
     }

@@ -52,9 +52,9 @@ impl LightNeeds {
 /// What a picture calls for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VolumeNeeds {
-    /// What it shows.
+    /// Lit scene, or visibility of one light.
     pub output: Output,
-    /// What lights it.
+    /// What each light calls for.
     pub lights: Vec<LightNeeds>,
     /// Number of the buffers that all lights share, and their bytes.
     pub buffers: (usize, u64),

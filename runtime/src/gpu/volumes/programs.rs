@@ -19,7 +19,7 @@ const RUN_BITS: u32 = 0x7f;
 /// The bit that is set where an earlier run counted any.
 pub const EARLIER_RUN: u32 = 0x80;
 
-/// A pipeline.
+/// What tells pipelines of shadow volumes apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum VolumeProgram {
     /// Depths of surfaces.
@@ -65,7 +65,7 @@ impl VolumeProgram {
 /// What tells pipelines over faces of volumes apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct FaceKey {
-    /// What extrudes them.
+    /// The kind of light that extrudes them.
     pub light: VolumeLight,
     /// Where corners come from.
     pub corners: VolumeCorners,
@@ -82,9 +82,9 @@ pub struct FaceKey {
 /// How a light is blended with what the picture holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LightBlend {
-    /// It replaces it.
+    /// Overwrites the target: the only light of a mask.
     Replace,
-    /// It is added.
+    /// Adds to the target: the lights of a lit picture.
     Add,
     /// It is added, times the blend constant: one of several suns.
     AddShare,

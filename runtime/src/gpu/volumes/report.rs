@@ -37,7 +37,7 @@ pub struct LightReport {
 /// What a frame was made of.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct FrameReport {
-    /// Passes.
+    /// Number of passes.
     pub passes: usize,
     /// Lights that were drawn. All suns of a disc are one entry, with the sums of their seconds.
     pub lights: Vec<LightReport>,
