@@ -1,8 +1,8 @@
 //! Progress of a bake, reported to the caller.
 
-/// A stage of a bake, in the order they run.
+/// A step of a bake, in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BakeStage {
+pub enum BakeStep {
     /// Reading the scene. No count.
     Load,
     /// Unwrapping and packing. Counts thousandths.
@@ -21,8 +21,8 @@ pub enum BakeStage {
     Write,
 }
 
-impl BakeStage {
-    /// Name of the stage while it runs.
+impl BakeStep {
+    /// Name of the step while it runs.
     pub fn verb(self) -> &'static str {
         match self {
             Self::Load => "reading the scene",
@@ -39,11 +39,11 @@ impl BakeStage {
 
 /// Receives the progress of a bake. Calls come from any thread.
 pub trait Progress: Sync {
-    /// Name of the task that the next stages belong to, where a bake is one of several tasks.
+    /// Name of the task that the next steps belong to, where a bake is one of several tasks.
     fn task(&self, _name: &str) {}
-    /// A stage starts; `total` is its final count, 0 if it does not count.
-    fn start(&self, stage: BakeStage, total: u64);
-    /// Adds to the count of the current stage.
+    /// A step starts; `total` is its final count, 0 if it does not count.
+    fn start(&self, step: BakeStep, total: u64);
+    /// Adds to the count of the current step.
     fn advance(&self, by: u64);
     /// Whether the bake should stop. It then fails with [`crate::BakeError::Cancelled`] and leaves nothing behind.
     fn is_cancelled(&self) -> bool {
@@ -56,6 +56,6 @@ pub trait Progress: Sync {
 pub struct Silent;
 
 impl Progress for Silent {
-    fn start(&self, _stage: BakeStage, _total: u64) {}
+    fn start(&self, _step: BakeStep, _total: u64) {}
     fn advance(&self, _by: u64) {}
 }

@@ -9,7 +9,7 @@ use crate::atlas::{self, PageSamples, PageSize, Sample};
 use crate::disk::manifest::{AmbientEntry, SeamEntry, VertexEntry};
 use crate::disk::write::VERTICES_FILE;
 use crate::glb;
-use crate::progress::BakeStage;
+use crate::progress::BakeStep;
 use crate::settings::AmbientRequest;
 use crate::warning::Warning;
 
@@ -22,7 +22,7 @@ impl PageBaker<'_> {
         order: &[u32],
     ) -> Result<Option<AmbientPage>, BakeError> {
         let Some(job) = self.lights.ambient else { return Ok(None) };
-        self.progress.start(BakeStage::Ambient, samples.samples.len() as u64);
+        self.progress.start(BakeStep::Ambient, samples.samples.len() as u64);
         let mut seconds = 0.0;
         let baked = timed(&mut seconds, || self.bake_page_ambient(&job, page, samples, order));
         self.stats.seconds.ambient += seconds;
@@ -35,7 +35,7 @@ impl PageBaker<'_> {
             return Ok(None);
         };
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
-        progress.start(BakeStage::Ambient, 0);
+        progress.start(BakeStep::Ambient, 0);
         let find =
             || ambient_visibility_of_vertices(job.engine, scene, geometry, job.normals, |_| !progress.is_cancelled());
         let (open, rays) = timed(&mut self.stats.seconds.ambient, find).ok_or(BakeError::Cancelled)?;

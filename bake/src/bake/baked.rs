@@ -2,7 +2,7 @@
 
 use super::error::BakeError;
 use crate::disk::BakedPage;
-use crate::disk::manifest::{AtlasEntry, Manifest, StageSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, Manifest, StepSeconds, Stats};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::lamp::LampPath;
 use crate::maps::{Bits, StoredBits};
@@ -81,7 +81,7 @@ pub(super) fn write_unpaged(
     writer.write_scene(scene_glb)?;
     vertices_glb.map(|glb| writer.write_vertices(glb)).transpose()?;
     let Stats { seconds, .. } = manifest.stats;
-    let seconds = StageSeconds { write: seconds.write + started.elapsed().as_secs_f64(), ..seconds };
+    let seconds = StepSeconds { write: seconds.write + started.elapsed().as_secs_f64(), ..seconds };
     let manifest = Manifest { stats: Stats { bytes: writer.bytes(), seconds, ..manifest.stats }, ..manifest };
     writer.finish(&manifest)?;
     Ok(manifest)
@@ -168,7 +168,7 @@ mod tests {
 
     /// A manifest without what no two bakes share.
     fn timeless(manifest: &Manifest) -> Manifest {
-        let stats = Stats { seconds: StageSeconds::default(), ..manifest.stats.clone() };
+        let stats = Stats { seconds: StepSeconds::default(), ..manifest.stats.clone() };
         Manifest { stats, ..manifest.clone() }
     }
 

@@ -3,7 +3,7 @@
 use super::error::BakeError;
 use super::memory::{BYTES_PER_SAMPLE, bytes_needed};
 use crate::atlas::{self, Atlas, AtlasError, AtlasSettings};
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::remedy::Setting;
 use crate::scene::Scene;
 use crate::settings::BakeSettings;
@@ -59,7 +59,7 @@ fn changed_settings(settings: &BakeSettings, asked: &BakeSettings) -> Warning {
 }
 
 fn unwrap(scene: &Scene, settings: &BakeSettings, progress: &dyn Progress) -> Result<Atlas, AtlasError> {
-    progress.start(BakeStage::Unwrap, 1000);
+    progress.start(BakeStep::Unwrap, 1000);
     let reported = std::sync::atomic::AtomicU64::new(0);
     let atlas_settings = AtlasSettings {
         density: settings.density,

@@ -4,7 +4,7 @@ use crate::ambient::{AmbientEngine, Mismatch};
 use crate::disk::manifest::{ErrorEntry, LampStats};
 use crate::loss::LossStatistics;
 use crate::maps::{EncodeLoss, Lane, LaneMaps, PageEncoder};
-use crate::progress::BakeStage;
+use crate::progress::BakeStep;
 use crate::scene::ShadingNormals;
 use crate::settings::{AmbientRequest, BakeSettings};
 use crate::visibility::{Engine, Intervals, Work};
@@ -49,8 +49,8 @@ pub(super) struct LightJob<'a> {
     pub lanes: &'a [Lane],
     /// Minutes of the path.
     pub duration_min: f64,
-    /// The stage that is reported while its intervals are found.
-    pub stage: BakeStage,
+    /// The step that is reported while its intervals are found.
+    pub step: BakeStep,
 }
 
 /// Statistics of the sun or a lamp so far, over all pages.

@@ -1,4 +1,4 @@
-//! A bake from end to end: the flow of the crate, one stage after the other.
+//! A bake from end to end: the flow of the crate, one step after the other.
 
 mod ambient;
 mod baked;
@@ -18,13 +18,13 @@ pub(crate) use layout::fitting_atlas;
 pub use prepare::{Prepared, prepare, sun_path};
 
 use crate::ambient::AmbientEngine;
-use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, StageSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, StepSeconds, Stats};
 use crate::disk::write::SetWriter;
 use crate::glb::{self, Occlusion};
 use crate::lamp::LampPath;
 use crate::maps::Lane;
 use crate::plan::{Effect, LayersNeeded};
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::scene::{self, Geometry, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
 use crate::sun::SunPath;
@@ -106,11 +106,11 @@ fn bake_prepared(
     };
     check_memory(scene, settings, settings.page_size_texels)?;
     check_cancelled(progress)?;
-    let mut seconds = StageSeconds { load: prepared.load_seconds, ..StageSeconds::default() };
+    let mut seconds = StepSeconds { load: prepared.load_seconds, ..StepSeconds::default() };
     let mut warnings = prepared.warnings.clone();
     let (atlas, settings) = &timed(&mut seconds.unwrap, || fitting_atlas(scene, settings, &mut warnings, progress))?;
 
-    progress.start(BakeStage::Bvh, 0);
+    progress.start(BakeStep::Bvh, 0);
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
@@ -118,11 +118,11 @@ fn bake_prepared(
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
     let sun =
-        engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, stage: BakeStage::Visibility });
+        engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, step: BakeStep::Visibility });
     let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
     let lamp = lamp.as_ref().zip(lamp_engine.as_deref()).map(|(path, engine)| {
         let duration_min = path.duration_min();
-        LightJob { engine, lanes: &[Lane::CENTRE], duration_min, stage: BakeStage::Lamp }
+        LightJob { engine, lanes: &[Lane::CENTRE], duration_min, step: BakeStep::Lamp }
     });
     let normals = ShadingNormals::new(scene);
     let request = settings.ambient.as_ref();

@@ -6,7 +6,7 @@ use super::light::{AmbientAccount, LaneEncoders, LightAccount, LightJob, Lights}
 use super::timing::{check_cancelled, timed};
 use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::BakedPage;
-use crate::disk::manifest::{AtlasEntry, StageSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, StepSeconds, Stats};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{AmbientMaps, LaneMaps, PageMaps};
@@ -42,7 +42,7 @@ impl<'a> PageBaker<'a> {
         settings: &'a BakeSettings,
         lights: Lights<'a>,
         progress: &'a dyn Progress,
-        seconds: StageSeconds,
+        seconds: StepSeconds,
     ) -> Self {
         let stats = Stats {
             triangles: scene.triangle_count() as u64,
@@ -77,7 +77,7 @@ impl<'a> PageBaker<'a> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
         for (index, &size) in self.atlas.pages.iter().enumerate() {
             let page = self.bake(index)?;
-            self.progress.start(BakeStage::Write, 0);
+            self.progress.start(BakeStep::Write, 0);
             self.occlusion.extend(page.maps.ambient.as_ref().map(|ambient| OcclusionPage::new(size, ambient)));
             let entry = page.entry(index);
             timed(&mut self.stats.seconds.write, || sink.take(page, &entry))?;
@@ -134,7 +134,7 @@ impl<'a> PageBaker<'a> {
         PageSamples { samples }: &PageSamples,
         order: &[u32],
     ) -> Option<(Vec<IntervalTable>, Work)> {
-        self.progress.start(light.stage, samples.len() as u64);
+        self.progress.start(light.step, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
             let point = |i: usize| atlas::surface_point(scene, geometry, &samples[order[i] as usize]);
@@ -155,7 +155,7 @@ impl<'a> PageBaker<'a> {
         tables: &[IntervalTable],
     ) -> Vec<LaneMaps> {
         let PageSamples { samples: texels } = samples;
-        self.progress.start(BakeStage::Encode, texels.len() as u64);
+        self.progress.start(BakeStep::Encode, texels.len() as u64);
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);

@@ -4,7 +4,7 @@ use super::error::BakeError;
 use super::leave_out::leave_out;
 use crate::lamp::{self, LampPath};
 use crate::plan::{EffectPlan, NoSun};
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::scene::{self, LoadLimits, Scene};
 use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{self, DayOutcome, SunPath};
@@ -31,7 +31,7 @@ pub struct Prepared {
 
 /// Reads the scene and decides what to bake.
 pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progress) -> Result<Prepared, BakeError> {
-    progress.start(BakeStage::Load, 0);
+    progress.start(BakeStep::Load, 0);
     let started = Instant::now();
     if !cfg!(feature = "exr") && (settings.loss_map || settings.ambient.is_some_and(|request| request.exr)) {
         return Err(BakeError::NoExr);

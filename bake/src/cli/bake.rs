@@ -36,7 +36,7 @@ fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failu
     }
     let mut text = format!("{} -> {}\n{}", args.scene.display(), target.display(), summary::of(manifest));
     if verbose {
-        text += &summary::stages(&manifest.stats.seconds);
+        text += &summary::step_seconds(&manifest.stats.seconds);
         text += &summary::effects(&manifest.effects);
     }
     print(&text)

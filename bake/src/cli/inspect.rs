@@ -15,7 +15,7 @@ pub fn run(args: &InspectArgs) -> Result<(), Failure> {
     print(
         &(heading
             + &summary::of(&manifest)
-            + &summary::stages(&manifest.stats.seconds)
+            + &summary::step_seconds(&manifest.stats.seconds)
             + &summary::effects(&manifest.effects)),
     )
 }

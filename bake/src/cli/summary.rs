@@ -6,7 +6,7 @@ use sunbake::Prepared;
 use sunbake::atlas::Density;
 use sunbake::disk::manifest::{
     AmbientEntry, AtlasEntry, EffectEntry, ErrorEntry, LampEntry, LampKeyEntry, LossEntry, Manifest, PathEntry,
-    SeamEntry, StageSeconds,
+    SeamEntry, StepSeconds,
 };
 use sunbake::settings::BakeSettings;
 
@@ -94,14 +94,14 @@ pub fn effects(entries: &[EffectEntry]) -> String {
     sunbake::plan::in_words(entries)
 }
 
-/// The stages with their seconds, one a line.
-pub fn stages(seconds: &StageSeconds) -> String {
+/// The steps with their seconds, one a line.
+pub fn step_seconds(seconds: &StepSeconds) -> String {
     let row = |(name, s): &(&str, f64)| format!("  {name:<12}{s:8.2} s\n");
-    by_stage(seconds).iter().filter(|(_, s)| *s > 0.0).map(row).collect()
+    by_step(seconds).iter().filter(|(_, s)| *s > 0.0).map(row).collect()
 }
 
-fn by_stage(seconds: &StageSeconds) -> [(&'static str, f64); 7] {
-    let StageSeconds { load, unwrap, bvh, visibility, ambient, encode, write } = *seconds;
+fn by_step(seconds: &StepSeconds) -> [(&'static str, f64); 7] {
+    let StepSeconds { load, unwrap, bvh, visibility, ambient, encode, write } = *seconds;
     [
         ("load", load),
         ("unwrap", unwrap),
@@ -250,7 +250,7 @@ fn engine(manifest: &Manifest) -> String {
 }
 
 fn cost(manifest: &Manifest) -> String {
-    let total: f64 = by_stage(&manifest.stats.seconds).iter().map(|(_, s)| s).sum();
+    let total: f64 = by_step(&manifest.stats.seconds).iter().map(|(_, s)| s).sum();
     let mib = manifest.stats.bytes as f64 / f64::from(1 << 20);
     let seconds = &manifest.stats.seconds;
     format!("{total:.1} s ({:.1} s of it tracing light), {mib:.1} MiB", seconds.visibility + seconds.ambient)

@@ -1,7 +1,7 @@
 //! Progress: one line on stderr, if stderr is a terminal.
 
 use super::signals::Signals;
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -12,7 +12,7 @@ use std::time::Duration;
 pub struct ProgressLine {
     is_drawn: bool,
     bar: Mutex<Option<ProgressBar>>,
-    /// What stages are part of; empty if they are part of nothing.
+    /// What steps are part of; empty if they are part of nothing.
     task: Mutex<String>,
     signals: Option<Signals>,
 }
@@ -73,10 +73,10 @@ impl ProgressLine {
         }
     }
 
-    fn message(&self, stage: BakeStage) -> String {
+    fn message(&self, step: BakeStep) -> String {
         match self.task.lock() {
-            Ok(task) if !task.is_empty() => format!("{task}: {}", stage.verb()),
-            _ => stage.verb().into(),
+            Ok(task) if !task.is_empty() => format!("{task}: {}", step.verb()),
+            _ => step.verb().into(),
         }
     }
 }
@@ -88,8 +88,8 @@ impl Progress for ProgressLine {
         }
     }
 
-    fn start(&self, stage: BakeStage, total: u64) {
-        self.begin(self.message(stage), total);
+    fn start(&self, step: BakeStep, total: u64) {
+        self.begin(self.message(step), total);
     }
 
     fn advance(&self, by: u64) {

@@ -1,6 +1,6 @@
 //! The time that measuring may take.
 
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::report::with_unit;
 use std::time::Instant;
 
@@ -52,8 +52,8 @@ impl Progress for Budget<'_> {
         self.progress.task(name);
     }
 
-    fn start(&self, stage: BakeStage, total: u64) {
-        self.progress.start(stage, total);
+    fn start(&self, step: BakeStep, total: u64) {
+        self.progress.start(step, total);
     }
 
     fn advance(&self, by: u64) {

@@ -126,8 +126,8 @@ pub struct CostRow {
     pub note: Option<String>,
     /// Seconds that were predicted for the measurement, from runs before; null where none was needed.
     pub predicted_s: Option<f64>,
-    /// Seconds: of a whole bake, all its stages; of a sparse bake, a prediction of that; of a setting at texels, the
-    /// stage that it changes, scaled to all texels of the page.
+    /// Seconds: of a whole bake, all its steps; of a sparse bake, a prediction of that; of a setting at texels, the
+    /// step that it changes, scaled to all texels of the page.
     pub seconds: Option<f64>,
     /// Bytes of all files of the set; null where none were written.
     pub disk_bytes: Option<u64>,

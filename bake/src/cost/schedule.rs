@@ -1,7 +1,7 @@
 //! The measurements, their order, and their results.
 //!
 //! Presets come first, since most people choose among them; then cheap sweeps at texels; then page sizes and lanes;
-//! then expensive sweeps. The time of a bake is predicted from the time per texel of its stages: engine and sky from
+//! then expensive sweeps. The time of a bake is predicted from the time per texel of its steps: engine and sky from
 //! the sweeps' sample, the rest from reading the scene and laying it out. The prediction is corrected by the measured
 //! time of the standard preset or, before that is known, of the last bake.
 
@@ -16,7 +16,7 @@ use super::sparse_bake::sparse_bake;
 use super::sweeps::{self, SweepPoint, TexelSweeps};
 use super::truth::{self, GroundTruth};
 use super::workload::Workload;
-use crate::disk::manifest::{Manifest, StageSeconds};
+use crate::disk::manifest::{Manifest, StepSeconds};
 use crate::disk::read;
 use crate::maps::Bits;
 use crate::progress::Progress;
@@ -222,7 +222,7 @@ impl<'a> Schedule<'a> {
 
     /// Corrects predictions by the time that a bake's texels took.
     fn correct(&mut self, settings: &BakeSettings, manifest: &Manifest) {
-        let StageSeconds { load, unwrap, bvh, .. } = manifest.stats.seconds;
+        let StepSeconds { load, unwrap, bvh, .. } = manifest.stats.seconds;
         let took_s = total_s(&manifest.stats.seconds) - load - unwrap - bvh;
         let is_standard = *settings == self.settings.preset(BakeSettings::standard);
         if let Some(texel_s) = self.texel_s(settings).filter(|_| is_standard || !self.has_standard) {
@@ -397,8 +397,8 @@ fn measured(name: &str, point: SweepPoint) -> CostRow {
     }
 }
 
-fn total_s(seconds: &StageSeconds) -> f64 {
-    let StageSeconds { load, unwrap, bvh, visibility, ambient, encode, write } = *seconds;
+fn total_s(seconds: &StepSeconds) -> f64 {
+    let StepSeconds { load, unwrap, bvh, visibility, ambient, encode, write } = *seconds;
     load + unwrap + bvh + visibility + ambient + encode + write
 }
 

@@ -16,7 +16,7 @@ use crate::bake::fitting_atlas;
 use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_share};
 use crate::progress::Progress;
 use crate::settings::{AmbientRequest, BakeSettings};
-use crate::{BakeError, progress::BakeStage};
+use crate::{BakeError, progress::BakeStep};
 use std::collections::{HashMap, HashSet};
 
 /// The result of a sparse bake.
@@ -42,7 +42,7 @@ pub(super) fn sparse_bake(
         Err(BakeError::Cancelled) => return Ok(None),
         Err(error) => return Err(error),
     };
-    budget.start(BakeStage::Encode, 0);
+    budget.start(BakeStep::Encode, 0);
     let texels = workload.on_threads(|| SparseTexels::new(workload, truth, &atlas, settings.padding_texels));
     Ok(texels.bake(workload, truth, &settings, atlas.texel_count(), budget))
 }

@@ -9,7 +9,7 @@ use crate::ambient::{AmbientEngine, AmbientPoint, AmbientSettings, Estimates, so
 use crate::atlas::{self, Atlas, Sample, SurfacePoint};
 use crate::bake::{Prepared, fitting_atlas, prepare};
 use crate::maps::Lane;
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::scene::{Geometry, Scene, ShadingNormals};
 use crate::settings::BakeSettings;
 use crate::sun::SunPath;
@@ -61,7 +61,7 @@ impl Workload {
         let Some(path) = prepared.path.clone() else { return Err(no_sun(&prepared)) };
         let (atlas, asked) = pool.install(|| fitting_atlas(&prepared.scene, &asked, &mut warnings, budget))?;
         warnings.extend(atlas.warnings.iter().cloned());
-        budget.start(BakeStage::Bvh, 0);
+        budget.start(BakeStep::Bvh, 0);
         let geometry = Geometry::new(&prepared.scene);
         let tracer = pool.install(|| Tracer::new(&prepared.scene, &geometry));
         let fixed_s = started.elapsed().as_secs_f64();
@@ -152,7 +152,7 @@ impl Workload {
         points: &[SurfacePoint],
         budget: &Budget,
     ) -> Option<(Vec<Intervals>, f64)> {
-        budget.start(BakeStage::Visibility, points.len() as u64);
+        budget.start(BakeStep::Visibility, points.len() as u64);
         let started = Instant::now();
         let on_progress = |count: usize| {
             budget.advance(count as u64);
@@ -170,7 +170,7 @@ impl Workload {
         points: &[AmbientPoint],
         budget: &Budget,
     ) -> Option<(Vec<Estimates>, f64)> {
-        budget.start(BakeStage::Ambient, points.len() as u64);
+        budget.start(BakeStep::Ambient, points.len() as u64);
         let started = Instant::now();
         let on_progress = |count: usize| {
             budget.advance(count as u64);

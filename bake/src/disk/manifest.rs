@@ -372,13 +372,13 @@ pub struct Stats {
     pub bytes: u64,
     /// Threads used.
     pub threads: usize,
-    /// Wall-clock seconds of each stage.
-    pub seconds: StageSeconds,
+    /// Wall-clock seconds of each step.
+    pub seconds: StepSeconds,
 }
 
-/// Wall-clock seconds of each stage.
+/// Wall-clock seconds of each step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct StageSeconds {
+pub struct StepSeconds {
     /// Reading the scene.
     pub load: f64,
     /// Unwrapping, packing and sampling.

@@ -28,7 +28,7 @@ pub(super) struct DrawnMeshes {
 /// A mesh of the file and, if a node poses it (skin or morph weights), that node.
 type PosedMesh = (usize, Option<usize>);
 
-/// Memory that an instance takes, here and in later stages.
+/// Memory that an instance takes, here and in later steps.
 const BYTES_PER_DRAW: u64 = 256;
 
 /// Memory of a primitive beside its vertices. Counting it bounds the work that a small file can cause.

@@ -56,7 +56,7 @@ pub enum CompareSource {
     },
 }
 
-/// Listens to a comparison. While a scene is baked it hears that bake's stages.
+/// Listens to a comparison. While a scene is baked it hears that bake's steps.
 pub trait CompareProgress: Progress {
     /// Drawing starts. [`Progress::advance`] follows once a frame, and drawing stops if [`Progress::is_cancelled`].
     fn start_drawing(&self, frame_count: u64);

@@ -7,7 +7,7 @@ use super::files::png_bytes;
 use args::CompareArgs;
 use sunbake::Warning;
 use sunbake::console::{Command, Failure, ProgressLine, print, print_json, set_threads, warn_all};
-use sunbake::progress::{BakeStage, Progress};
+use sunbake::progress::{BakeStep, Progress};
 use sunbake::report::folder;
 use sunbake_runtime::compare::report::{LimitEntry, Report};
 use sunbake_runtime::compare::{self, CompareProgress, CompareSettings, CompareSource, Compared, TechniqueSpec};
@@ -80,8 +80,8 @@ struct Listener<'a> {
 }
 
 impl Progress for Listener<'_> {
-    fn start(&self, stage: BakeStage, total: u64) {
-        self.progress.start(stage, total);
+    fn start(&self, step: BakeStep, total: u64) {
+        self.progress.start(step, total);
     }
 
     fn advance(&self, by: u64) {

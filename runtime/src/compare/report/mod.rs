@@ -213,7 +213,7 @@ pub struct Passes {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Preparation {
-    /// Seconds to bake, with all stages but ambient light; null where nothing is baked, and for one lane of a set with
+    /// Seconds to bake, with all steps but ambient light; null where nothing is baked, and for one lane of a set with
     /// several. For eight bits made of sixteen it is the set's, since rounding takes next to no time.
     pub bake_s: Option<f64>,
     /// Seconds to upload the scene and build pipelines.
