@@ -19,7 +19,7 @@ use std::path::Path;
 use sunbake::scene::{LoadLimits, load};
 use sunbake_runtime::compare::Defects;
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::shadow_maps::{Bias, MapSettings, MapOptimizations, Variant};
+use sunbake_runtime::shadow_maps::{Bias, MapOptimizations, MapSettings, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{ReferenceDay, defects_of};
 use sunbake_runtime::testing::masks::{camera_in_shadow, cameras_around, mask};

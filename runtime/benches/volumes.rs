@@ -238,9 +238,15 @@ fn optimizations(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
         edit(&mut optimizations);
         VolumeSettings { optimizations, ..VolumeSettings::default() }
     };
-    let mut rivals =
-        vec![VolumeSettings::default(), VolumeSettings { optimizations: VolumeOptimizations::NONE, ..VolumeSettings::default() }];
-    rivals.push(VolumeSettings { mode: Mode::Triangles, optimizations: VolumeOptimizations::NONE, ..VolumeSettings::default() });
+    let mut rivals = vec![
+        VolumeSettings::default(),
+        VolumeSettings { optimizations: VolumeOptimizations::NONE, ..VolumeSettings::default() },
+    ];
+    rivals.push(VolumeSettings {
+        mode: Mode::Triangles,
+        optimizations: VolumeOptimizations::NONE,
+        ..VolumeSettings::default()
+    });
     rivals.extend(lacking.iter().map(|(_, edit)| without(*edit)));
     let costs = measure(gpu, frames, &rivals, rounds);
     println!("\n{name}: optimizations, each as what its absence costs");
@@ -249,7 +255,8 @@ fn optimizations(gpu: &Gpu, name: &str, frames: &Frames, rounds: usize) {
     let names =
         ["nothing", "any of them", "any, a volume a triangle"].into_iter().chain(lacking.iter().map(|(what, _)| *what));
     // Where nothing is kept, a still frame finds its volumes again.
-    let frame = |rival: &VolumeSettings, cost: &Cost| if rival.optimizations.cache { cost.still() } else { cost.moving() };
+    let frame =
+        |rival: &VolumeSettings, cost: &Cost| if rival.optimizations.cache { cost.still() } else { cost.moving() };
     for (what, (rival, cost)) in names.zip(rivals.iter().zip(&costs)) {
         println!(
             "| {what} | {:.1} ms | {:.2} | {:.0} | {:.1} | {:.2} |",

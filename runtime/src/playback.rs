@@ -100,7 +100,8 @@ impl<'a> Page<'a> {
             let is_in_front = geometric_normal.dot(moment.sun_direction) > 0.0;
             return if is_in_front { self.page_visibility(page_uv, filter, moment) } else { 0.0 };
         }
-        let disc_share = (0.5 + geometric_normal.dot(moment.sun_direction) * moment.inverse_angular_diameter).clamp(0.0, 1.0);
+        let disc_share =
+            (0.5 + geometric_normal.dot(moment.sun_direction) * moment.inverse_angular_diameter).clamp(0.0, 1.0);
         if disc_share <= 0.0 {
             return 0.0;
         }

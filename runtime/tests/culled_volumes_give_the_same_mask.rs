@@ -5,7 +5,9 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, floor};
 use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::technique::{LightKind, Truth, Volumes};
-use sunbake_runtime::testing::masks::{OBLIQUE_SUN, assert_right, oblique_view, gpu, ground, mask, under_lamp, under_sun};
+use sunbake_runtime::testing::masks::{
+    OBLIQUE_SUN, assert_right, gpu, ground, mask, oblique_view, under_lamp, under_sun,
+};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Mode, VolumeOptimizations};
 use sunbake_runtime::{Moment, Shot};

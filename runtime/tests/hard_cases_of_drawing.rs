@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, Mat3, Vec2, Vec3};
 use sunbake::maps::Bits;
 use sunbake::scene::{Mesh, Scene, TextureRef, Wrap};
 use sunbake::sun::SunPath;
-use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, opaque};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, floor, opaque};
 use sunbake_runtime::compare::{Agreement, visibility_difference};
 use sunbake_runtime::gpu::{Gpu, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};

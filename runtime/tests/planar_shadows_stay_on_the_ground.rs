@@ -7,7 +7,7 @@ use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{LightKind, ShadowMaps, Technique, Truth};
 use sunbake_runtime::testing::maps::surface_points;
-use sunbake_runtime::testing::masks::{OBLIQUE_SUN, oblique_view, gpu, ground, mask, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, gpu, ground, mask, oblique_view, under_sun};
 use sunbake_runtime::{Shot, Stage};
 
 fn seen(gpu: &Gpu, shot: &Shot, variant: Variant) -> Vec<f32> {

@@ -4,10 +4,10 @@ use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::shadow_maps::{Bias, MapSettings, MapOptimizations, Variant};
+use sunbake_runtime::shadow_maps::{Bias, MapOptimizations, MapSettings, Variant};
 use sunbake_runtime::technique::{ShadowMaps, Technique};
 use sunbake_runtime::testing::maps::{ReferenceShot, surface_points};
-use sunbake_runtime::testing::masks::{OBLIQUE_SUN, oblique_view, gpu, ground, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, gpu, ground, oblique_view, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
 
@@ -136,7 +136,10 @@ fn m3_a_caster_above_the_map_still_casts() {
     let shot = Shot::new(&stage, oblique_view(&stage));
     for variant in Variant::ALL {
         let settings = sized(variant, 512);
-        let unclamped = MapSettings { optimizations: MapOptimizations { depth_clamp: false, ..MapOptimizations::default() }, ..settings };
+        let unclamped = MapSettings {
+            optimizations: MapOptimizations { depth_clamp: false, ..MapOptimizations::default() },
+            ..settings
+        };
         let [clamped, unclamped] = [settings, unclamped].map(|settings| seen(&gpu, &shot, &moment, settings));
         for (i, place) in surface_points(&shot) {
             if place.x < -0.3 && place.x > -5.5 && place.y < 1e-3 && place.z.abs() < 5.5 {

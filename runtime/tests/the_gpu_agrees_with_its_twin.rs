@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, icosphere, opaque, pseudo_random};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, floor, icosphere, opaque, pseudo_random};
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};

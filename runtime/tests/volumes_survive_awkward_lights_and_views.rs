@@ -9,7 +9,7 @@ use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::technique::{LightKind, Technique, Truth, Volumes};
 use sunbake_runtime::testing::masks::{
-    OBLIQUE_SUN, assert_right, assert_ways_agree, compare_ways, oblique_view, gpu, ground, lamp_at, mask, under_lamp,
+    OBLIQUE_SUN, assert_right, assert_ways_agree, compare_ways, gpu, ground, lamp_at, mask, oblique_view, under_lamp,
     under_sun,
 };
 use sunbake_runtime::testing::{equinox, view};

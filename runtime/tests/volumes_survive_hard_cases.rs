@@ -6,7 +6,7 @@ use sunbake::scene::{Material, Mesh, Scene};
 use sunbake::testing::{SceneBuilder, block, floor, icosphere, opaque};
 use sunbake_runtime::gpu::VolumeSettings;
 use sunbake_runtime::technique::{LightKind, Technique, Volumes};
-use sunbake_runtime::testing::masks::{OBLIQUE_SUN, assert_right, oblique_view, gpu, ground, mask, under_sun};
+use sunbake_runtime::testing::masks::{OBLIQUE_SUN, assert_right, gpu, ground, mask, oblique_view, under_sun};
 use sunbake_runtime::testing::view;
 use sunbake_runtime::volumes::{Casters, Mode};
 use sunbake_runtime::{Shot, View};
@@ -191,7 +191,8 @@ fn v8_edges_of_three_and_four_triangles_and_a_moebius_strip() {
             [[p, q, r], [p, r, s]]
         })
         .collect();
-    let stage = under_sun(ground().soup_of(&moebius, Material { is_double_sided: true, ..opaque() }).build(), OBLIQUE_SUN);
+    let stage =
+        under_sun(ground().soup_of(&moebius, Material { is_double_sided: true, ..opaque() }).build(), OBLIQUE_SUN);
     assert_right(&gpu(), "v8, moebius", &stage, &[oblique_view(&stage)], &stage.moment(0.5), LightKind::Sun);
     let counts = Casters::new(&stage).counts;
     assert_eq!((counts.solid_bodies, counts.open_bodies), (0, 2), "a strip with one side bounds nothing");

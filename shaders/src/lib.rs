@@ -41,11 +41,11 @@ pub use compose::{
     sky_shader, visibility_shader,
 };
 pub use shadow_maps::{
-    ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowMapChoice, blur_shader, mapped_lit_shader,
+    ShadowBias, ShadowFilter, ShadowMapChoice, ShadowSource, ShadowTap, blur_shader, mapped_lit_shader,
     mapped_visibility_shader, shadow_depth_shader, shadow_mask_shader, shadow_probe_shader,
 };
 pub use uniforms::{
-    FrameUniform, LampUniform, MOST_SHADOW_MAPS, MaterialUniform, ShadowMapsUniform, ShadowMapUniform, SkyUniform,
+    FrameUniform, LampUniform, MOST_SHADOW_MAPS, MaterialUniform, ShadowMapUniform, ShadowMapsUniform, SkyUniform,
     WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
 };
 pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};

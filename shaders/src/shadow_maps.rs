@@ -103,8 +103,7 @@ pub fn shadow_depth_shader(surface: SurfaceVariant) -> String {
 /// for surfaces with alpha masks `surface_vertex`, and `mask_fragment`.
 pub fn shadow_mask_shader(surface: SurfaceVariant, is_flat: bool) -> String {
     let place = if is_flat { wgsl!("shadow_maps/flat_projection") } else { wgsl!("shadow_maps/map_projection") };
-    let mut text =
-        [wgsl!("frame/frame"), wgsl!("shadow_maps/map"), place, wgsl!("shadow_maps/ground_height")].concat();
+    let mut text = [wgsl!("frame/frame"), wgsl!("shadow_maps/map"), place, wgsl!("shadow_maps/ground_height")].concat();
     if surface.has_alpha_mask {
         let height = ("height_m", "height_above_ground(vertex.position_m)");
         crate::compose::push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, Some(height)));

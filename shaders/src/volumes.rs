@@ -63,7 +63,9 @@ pub fn volume_shader(light: VolumeLight, corners: VolumeCorners, of: VolumeUse) 
         (VolumeCorners::FromEdges, VolumeLight::Sun) => {
             text.push_str(&[wgsl!("volumes/silhouettes_by_gpu"), wgsl!("volumes/wall_sun")].concat());
         }
-        (VolumeCorners::FromEdges, _) => text.push_str(&[wgsl!("volumes/silhouettes_by_gpu"), wgsl!("volumes/wall_lamp")].concat()),
+        (VolumeCorners::FromEdges, _) => {
+            text.push_str(&[wgsl!("volumes/silhouettes_by_gpu"), wgsl!("volumes/wall_lamp")].concat());
+        }
     }
     text.push_str(match of {
         VolumeUse::Stencil => "",

@@ -121,7 +121,9 @@ fn a_sun_without_width_has_no_code_that_measures_widths() {
     for filter in [Filter::Nearest, Filter::Bilinear] {
         let texts = |page: &PageVariant| [lit_shader(surface, page, filter), visibility_shader(surface, page, filter)];
         // Looked for in what has them as well, so that the words are those that would be there.
-        for words in ["soft_visibility", "frame.width_t", "frame.inverse_angular_diameter", "window_start", "disc_share"] {
+        for words in
+            ["soft_visibility", "frame.width_t", "frame.inverse_angular_diameter", "window_start", "disc_share"]
+        {
             assert!(texts(&page(false)).iter().all(|text| text.contains(words)), "{words}");
             assert!(!texts(&page(true)).iter().any(|text| text.contains(words)), "{words}");
         }

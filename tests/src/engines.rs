@@ -90,7 +90,8 @@ impl Candidate {
         let agreement = Agreement::of(&lasting(found, 1.999 * (self.edge_t)(path)), truth);
         // An edge of brute force lies anywhere between two of its suns.
         let unsure_t = 0.5001 / truth.len() as f64;
-        agreement.furthest_t <= self.blind_interval_t + unsure_t && agreement.edge_error_t <= (self.edge_t)(path) + unsure_t
+        agreement.furthest_t <= self.blind_interval_t + unsure_t
+            && agreement.edge_error_t <= (self.edge_t)(path) + unsure_t
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::error::BakeError;
 use crate::disk::BakedPage;
-use crate::disk::manifest::{AtlasEntry, Manifest, StepSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, Manifest, Stats, StepSeconds};
 use crate::disk::write::{SetWriter, WriteError};
 use crate::lamp::LampPath;
 use crate::maps::{Bits, StoredBits};

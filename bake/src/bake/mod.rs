@@ -18,7 +18,7 @@ pub(crate) use layout::fitting_atlas;
 pub use prepare::{Prepared, prepare, sun_path};
 
 use crate::ambient::AmbientEngine;
-use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, StepSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, LampEntry, Manifest, SceneEntry, Stats, StepSeconds};
 use crate::disk::write::SetWriter;
 use crate::glb::{self, Occlusion};
 use crate::lamp::LampPath;

@@ -6,7 +6,7 @@ use super::light::{AmbientAccount, LaneEncoders, LightAccount, LightJob, Lights}
 use super::timing::{check_cancelled, timed};
 use crate::atlas::{self, Atlas, PageSamples};
 use crate::disk::BakedPage;
-use crate::disk::manifest::{AtlasEntry, StepSeconds, Stats};
+use crate::disk::manifest::{AtlasEntry, Stats, StepSeconds};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{AmbientMaps, LaneMaps, PageMaps};

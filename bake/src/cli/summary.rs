@@ -163,7 +163,10 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
         0 => String::new(),
         count => format!(", {count} not to that error"),
     };
-    format!("{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unconverged}", entry.buried_texels)
+    format!(
+        "{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unconverged}",
+        entry.buried_texels
+    )
 }
 
 fn seams(entry: &SeamEntry) -> String {

@@ -66,7 +66,8 @@ impl PlayedMaps<'_> {
         let geometric_normal = place.geometric_normal();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
         let at = |t: f64| {
-            let share = (0.5 + geometric_normal.dot(path.direction(t)) * inverse_angular_diameter).clamp(0.0, 1.0) as f32;
+            let share =
+                (0.5 + geometric_normal.dot(path.direction(t)) * inverse_angular_diameter).clamp(0.0, 1.0) as f32;
             if share <= 0.0 {
                 return 0.0;
             }

@@ -156,6 +156,7 @@ fn of_side(
     if !place.surface.is_double_sided {
         return metric::disc_visibility(answers, lanes, path, place.start);
     }
-    let in_front = answers.iter().zip(paths).map(|(lit, path)| lit.intersection(&path.above_plane(place.geometric_normal())));
+    let in_front =
+        answers.iter().zip(paths).map(|(lit, path)| lit.intersection(&path.above_plane(place.geometric_normal())));
     metric::disc_visibility(&in_front.collect::<Vec<_>>(), lanes, path, place.start)
 }

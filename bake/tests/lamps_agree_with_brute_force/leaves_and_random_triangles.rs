@@ -4,7 +4,7 @@ use crate::brute_force::{Here, agree};
 use crate::{ground, wall};
 use glam::{DVec3, Mat3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
-use sunbake::testing::{SceneBuilder, block, alpha_masked, opaque, pseudo_random};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, opaque, pseudo_random};
 
 /// A wall of leaves: a mask with gaps of one texel and of many.
 fn leaf(builder: SceneBuilder, alpha: impl Fn(u32, u32) -> u8) -> SceneBuilder {

@@ -210,7 +210,8 @@ impl<'a> ReceiverPoint<'a> {
             let aside = self.aside[0] * cos + self.aside[1] * sin;
             let shift_m = aside * (reach_m * ((f64::from(i) + 0.5) / f64::from(RAYS)).sqrt());
             // On the plane of the surface, which lies up or down along the light.
-            let start_m = origin_m + shift_m - self.sun * (self.geometric_normal.dot(shift_m) / self.geometric_normal.dot(self.sun));
+            let start_m = origin_m + shift_m
+                - self.sun * (self.geometric_normal.dot(shift_m) / self.geometric_normal.dot(self.sun));
             // And beside the start: the plane may continue below another surface.
             [start_m, origin_m + shift_m].into_iter().any(|start_m| {
                 reaches(start_m, self.sun) || (self.spread > 0.0 && reaches(start_m, self.sun + aside * self.spread))

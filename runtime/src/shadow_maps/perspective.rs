@@ -56,7 +56,11 @@ pub fn perspective(request: &MapRequest<'_>, is_cube: bool) -> Vec<MapProjection
         MapProjection::orthographic(request.extents.axes, &shaded, request.size_texels, request.margin_texels);
     // Without a gain the orthographic map is used.
     match best {
-        Some((log_texel_px, maps)) if log_texel_px <= request.mean_log_texel_px(std::slice::from_ref(&orthographic), &samples) => maps,
+        Some((log_texel_px, maps))
+            if log_texel_px <= request.mean_log_texel_px(std::slice::from_ref(&orthographic), &samples) =>
+        {
+            maps
+        }
         _ => vec![orthographic],
     }
 }

@@ -50,7 +50,8 @@ impl Warp {
         let middle = 0.5 * (low + high);
         let axis = |turn: f64| {
             // For a sun across the view there is only one axis.
-            let straight = if l.w.abs() > LEAST_POINT_SUN_W { DVec3::new(l.x / l.w, l.y / l.w, middle.z) } else { middle };
+            let straight =
+                if l.w.abs() > LEAST_POINT_SUN_W { DVec3::new(l.x / l.w, l.y / l.w, middle.z) } else { middle };
             Self::with_axis(eye_m, towards, q, l, middle.lerp(straight, turn))
         };
         TURNS.into_iter().filter_map(axis).collect()

@@ -51,8 +51,9 @@ impl Truth {
             return 0.0;
         }
         let tracer = stage.tracer();
-        let reaches =
-            |lamp_m: DVec3| geometric_normal.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none();
+        let reaches = |lamp_m: DVec3| {
+            geometric_normal.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none()
+        };
         match self {
             Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
             Self::Soft { rays } => {
@@ -85,7 +86,9 @@ impl Truth {
     ) -> f32 {
         let tracer = stage.tracer();
         let reaches = |direction: DVec3| {
-            direction.y > 0.0 && geometric_normal.dot(direction) > 0.0 && !tracer.is_occluded(origin_m, &Direction::new(direction))
+            direction.y > 0.0
+                && geometric_normal.dot(direction) > 0.0
+                && !tracer.is_occluded(origin_m, &Direction::new(direction))
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(sun.centre))),
@@ -114,7 +117,12 @@ impl ShadowRayOrigin {
         let geometric_normal = if front.dot(ray.as_dvec3()) > 0.0 { -front } else { front };
         let point_m = stage.geometry.point(triangle, hit.barycentric);
         let on_plane_m = stage.geometry.triangles[triangle][0].as_dvec3();
-        Self { geometric_normal, on_plane_m, point_m, origin_m: stage.tracer().lift(point_m, geometric_normal, hit.triangle) }
+        Self {
+            geometric_normal,
+            on_plane_m,
+            point_m,
+            origin_m: stage.tracer().lift(point_m, geometric_normal, hit.triangle),
+        }
     }
 }
 

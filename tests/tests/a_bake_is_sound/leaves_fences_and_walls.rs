@@ -5,7 +5,7 @@ use glam::{DMat4, Vec2, Vec3};
 use sunbake::atlas::Density;
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
 use sunbake::settings::{BakeSettings, SunRequest};
-use sunbake::testing::{SceneBuilder, block, alpha_masked, floor};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, floor};
 use sunbake_tests::{CODE_STEP_T, bake_scene, june_day, quick};
 
 /// A card over a floor, its left half transparent, its right half opaque at 200 of 255, under a sun at the zenith.

@@ -6,7 +6,7 @@ use sunbake::ambient::AmbientSettings;
 use sunbake::atlas::Density;
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::settings::{AmbientRequest, BakeSettings};
-use sunbake::testing::{SceneBuilder, block, alpha_masked, floor, opaque};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, floor, opaque};
 use sunbake::texels::Texel;
 use sunbake_tests::ambient::{ambient_visibility, flat, rays, share_of_polygon};
 use sunbake_tests::{Traced, flipped};

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::scene::{Mesh, TextureRef, Wrap};
 use sunbake::sun::SunArc;
-use sunbake::testing::{SceneBuilder, block, alpha_masked, floor};
+use sunbake::testing::{SceneBuilder, alpha_masked, block, floor};
 use sunbake::visibility::{BisectEngine, IntervalTable, Intervals, lit_at};
 use sunbake_tests::engines::{ALL, BISECT, Candidate, EXACT, RAYS, SUNS, all_must_agree};
 use sunbake_tests::paths::{Random, day_at, keyed};

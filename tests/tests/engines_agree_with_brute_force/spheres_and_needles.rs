@@ -118,7 +118,13 @@ fn a_hole_lights_just_while_the_sun_is_in_it() {
             let expected = behind(&path, from, &outline).intersection(&up);
             for engine in ALL {
                 let found = engine.lit(&here, &path, &point);
-                assert_intervals("a hole", &found, &expected, (engine.edge_t)(&path) + 1e-9, 2.0 * engine.blind_interval_t);
+                assert_intervals(
+                    "a hole",
+                    &found,
+                    &expected,
+                    (engine.edge_t)(&path) + 1e-9,
+                    2.0 * engine.blind_interval_t,
+                );
             }
             long_enough += u32::from(expected.lit_length() > 2.0 * EXACT.blind_interval_t);
         }

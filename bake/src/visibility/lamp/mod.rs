@@ -30,7 +30,7 @@ use hide::SegmentFromPoint;
 use open::OpenSpans;
 use seeds::SeedTriangles;
 use span::{Span, common, not_negative};
-use walk::{PointSegmentTriangle, NextLeaf, Tree};
+use walk::{NextLeaf, PointSegmentTriangle, Tree};
 
 /// Lit intervals of a lamp in closed form.
 pub struct LampEngine<'a> {
@@ -99,7 +99,8 @@ impl LampSession<'_> {
         }
         let scale = tracer.tracer_from_bake();
         let origin = tracer.lift(point.position_m, normal, point.triangle) * scale;
-        let from_point = SegmentFromPoint { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
+        let from_point =
+            SegmentFromPoint { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
         self.close(index, side, origin, &from_point, &mut open);
         lit.extend(open.as_slice().iter().map(|span| span.map(|s| t_of(segment, s))));
     }

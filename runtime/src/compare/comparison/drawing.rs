@@ -8,7 +8,7 @@ use super::times::timed_frame;
 use super::{Comparison, FrameRequest};
 use crate::gpu::VolumeSettings;
 use crate::image::Raster;
-use crate::shadow_maps::{MapSettings, MapOptimizations, Variant};
+use crate::shadow_maps::{MapOptimizations, MapSettings, Variant};
 use crate::stage::Stage;
 use crate::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Volumes};
 use crate::volumes::VolumeOptimizations;

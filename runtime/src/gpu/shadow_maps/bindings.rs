@@ -7,7 +7,7 @@ use crate::gpu::frame::write_in_order;
 use crate::shadow_maps::{MOST_MAPS, MapProjection, MapSettings, Variant};
 use bytemuck::Zeroable;
 use glam::Vec3;
-use sunbake_shaders::{ShadowMapsUniform, ShadowTap, ShadowMapUniform};
+use sunbake_shaders::{ShadowMapUniform, ShadowMapsUniform, ShadowTap};
 
 /// One map's matrix, for the pass that draws it.
 pub struct MapMatrix {

@@ -8,7 +8,7 @@ use crate::gpu::frame::{
     sky_program, surface_stages, surface_state,
 };
 use crate::shadow_maps::Variant;
-use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowSource, ShadowTap, ShadowMapChoice, SurfaceVariant};
+use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowMapChoice, ShadowSource, ShadowTap, SurfaceVariant};
 
 /// What tells pipelines of shadow maps apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -99,7 +99,8 @@ impl EdgeBuffers {
                 let [low, high] = casters.edges[edge];
                 records.extend((0..paired).map(|i| [low, high, along[i], against[i]]));
                 let rest: Vec<u32> = along[paired..].iter().chain(&against[paired..]).copied().collect();
-                records.extend(rest.chunks(2).map(|two| [low, high, two[0], two.get(1).copied().unwrap_or(NO_TRIANGLE)]));
+                records
+                    .extend(rest.chunks(2).map(|two| [low, high, two[0], two.get(1).copied().unwrap_or(NO_TRIANGLE)]));
             }
             of_caster.push(first..records.len() as u32);
         }

@@ -46,7 +46,13 @@ impl VolumeDraws {
     }
 }
 
-fn draws(extruded: &Extruded, run: &CountedRun, plan: &FramePlan, is_z_pass: bool, optimizations: VolumeOptimizations) -> Vec<FaceDraw> {
+fn draws(
+    extruded: &Extruded,
+    run: &CountedRun,
+    plan: &FramePlan,
+    is_z_pass: bool,
+    optimizations: VolumeOptimizations,
+) -> Vec<FaceDraw> {
     let draw = |part, instances| move |corners| FaceDraw { part, corners, instances };
     if extruded.kind.1 == VolumeCorners::Indexed {
         return plan

@@ -6,7 +6,7 @@ use crate::volumes::nearest::distance_m;
 use crate::volumes::overlap;
 use crate::volumes::silhouettes::volumes;
 use crate::volumes::{
-    Casters, Extrusion, Facings, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, VolumeOptimizations, Sharing,
+    Casters, Extrusion, Facings, Light, MOST_COUNTED, MOST_COUNTED_BY_RUN, Mode, Parts, Sharing, VolumeOptimizations,
 };
 use std::borrow::Cow;
 use std::time::Instant;
@@ -137,7 +137,8 @@ impl Extruded {
         facings: &[i8],
         extrusion: Extrusion,
     ) -> Result<CountedRun, GpuError> {
-        let word = |of: &[i8]| of.iter().enumerate().fold(0, |word, (i, facing)| word | ((facing + 1) as u32) << (2 * i));
+        let word =
+            |of: &[i8]| of.iter().enumerate().fold(0, |word, (i, facing)| word | ((facing + 1) as u32) << (2 * i));
         let packed: Vec<u32> = facings.chunks(16).map(word).collect();
         let packed = storage(gpu, "facings", bytemuck::cast_slice(&packed))?;
         self.buffers.0 += 1;

@@ -18,6 +18,7 @@
 
 mod bounds;
 mod caster_buffers;
+mod debug;
 mod decisions;
 mod draws;
 mod extruded;
@@ -27,7 +28,6 @@ mod plan;
 mod programs;
 mod record;
 mod report;
-mod debug;
 
 pub use report::{FrameReport, LightReport, volumes_plan};
 

@@ -93,7 +93,8 @@ impl VolumeRenderer<'_> {
 
     /// Notes a light for the plan of this frame.
     pub(super) fn note_last(&mut self, light: &FrameLight, is_shaded: bool) {
-        let (light_index, hard, blend, shaded) = (light_index(&light.light), light.hard, light.blend, usize::from(is_shaded));
+        let (light_index, hard, blend, shaded) =
+            (light_index(&light.light), light.hard, light.blend, usize::from(is_shaded));
         match self.last.last_mut().filter(|last| last.light_index == light_index) {
             Some(last) => (last.count, last.shaded) = (last.count + 1, last.shaded + shaded),
             None => self.last.push(LastLight { light_index, hard, blend, count: 1, shaded, faces: BTreeSet::new() }),

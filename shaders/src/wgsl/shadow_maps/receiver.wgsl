@@ -18,7 +18,8 @@ const LEAST_DEPTH: f32 = 3.8e-6;
 
 // Where a point, relative to the eye, lies on a map: from -1 to 1 in x and y if it does, and w.
 fn place_on_map(map: i32, from_eye_m: vec3<f32>) -> vec3<f32> {
-    let clip = shadow_maps.maps[map].clip_from_point * vec4<f32>(from_eye_m + shadow_maps.maps[map].eye_from_origin_m, 1.0);
+    let point_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m;
+    let clip = shadow_maps.maps[map].clip_from_point * vec4<f32>(point_m, 1.0);
     return vec3<f32>(clip.xy / clip.w, clip.w);
 }
 
@@ -45,7 +46,8 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let raster_m = corner_m / 128.0 + length(from_eye_m) * (frame.pixel_angle_rad / 256.0 + ROUNDING);
     let off_surface_m = BIAS_NORMAL * BIAS_REACH * corner_m + raster_m;
     let towards_sun_m = BIAS_CONSTANT_M + BIAS_CONSTANT_TEXELS * texel_m + BIAS_SLOPE * BIAS_REACH * corner_m / facing;
-    let point_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m + geometric_normal * off_surface_m + sun * towards_sun_m;
+    let unbiased_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m;
+    let point_m = unbiased_m + geometric_normal * off_surface_m + sun * towards_sun_m;
     let clip = matrix * vec4<f32>(point_m, 1.0);
     var at: Receiver;
     at.map = map;

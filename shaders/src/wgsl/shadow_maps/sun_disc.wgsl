@@ -6,5 +6,6 @@ fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
     if disc_share <= 0.0 {
         return 0.0;
     }
-    return min(disc_share, shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, geometric_normal, varyings.clip.xy));
+    let from_eye_m = view_ray(varyings.clip.xy) / varyings.clip.w;
+    return min(disc_share, shadow_visibility(from_eye_m, geometric_normal, varyings.clip.xy));
 }
