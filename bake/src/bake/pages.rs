@@ -10,7 +10,7 @@ use crate::disk::manifest::{AtlasEntry, Stats, StepSeconds};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{AmbientMaps, LaneMaps, PageMaps};
-use crate::progress::{BakeStage, Progress};
+use crate::progress::{BakeStep, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::visibility::{self, IntervalTable, Work};

@@ -32,7 +32,7 @@ impl AmbientMaps {
         Self { front: AmbientSide::of(&page.front), back: page.back.as_ref().map(AmbientSide::of) }
     }
 
-    /// The same with ambient visibility as a texture of so many bits keeps it. Other numbers always have 16 bits.
+    /// The same with ambient visibility as a texture of `bits` keeps it. Other numbers always have 16 bits.
     pub fn rounded_to(mut self, bits: Bits) -> Self {
         if bits == Bits::Eight {
             let sides = std::iter::once(&mut self.front).chain(&mut self.back);
