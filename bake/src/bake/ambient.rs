@@ -141,8 +141,8 @@ impl FinerSamples {
 
 /// Warnings about ambient light.
 pub(super) fn warnings(entry: &AmbientEntry, request: &AmbientRequest) -> Vec<Warning> {
-    let unconverged = (entry.unconverged_texels > 0).then(|| Warning::AmbientUnconverged {
-        texels: entry.unconverged_texels,
+    let unconverged = (entry.unsettled_texels > 0).then(|| Warning::AmbientUnconverged {
+        texels: entry.unsettled_texels,
         error: request.estimate.error.unwrap_or_default(),
         rays: request.estimate.rays,
     });
@@ -165,7 +165,7 @@ pub(super) fn entry(request: &AmbientRequest, account: &AmbientAccount) -> Ambie
         bits: request.bits.count(),
         rays_traced: account.rays,
         buried_texels: account.buried_texels,
-        unconverged_texels: account.unconverged_texels,
+        unsettled_texels: account.unconverged_texels,
         seams: SeamEntry {
             points: account.seams.iter().map(|[_, after]| after.points).sum(),
             differing: account.seams.iter().map(|[_, after]| after.differing).sum(),

@@ -159,7 +159,7 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
     };
     let within = entry.distance_m.map_or(String::new(), |m| format!(", within {m} m"));
     let speed = millions / seconds.max(1e-9);
-    let unconverged = match entry.unconverged_texels {
+    let unconverged = match entry.unsettled_texels {
         0 => String::new(),
         count => format!(", {count} not to that error"),
     };

@@ -222,9 +222,10 @@ pub struct AmbientEntry {
     pub rays_traced: u64,
     /// Texels inside a solid. Those beside a visible texel have its value, the others 0.
     pub buried_texels: u64,
-    /// Sides of texels whose error may exceed `error`, because the number of rays was not enough.
-    #[serde(default, rename = "unsettled_texels")]
-    pub unconverged_texels: u64,
+    /// Sides of texels whose error may exceed `error`, because the number of rays was not enough: those that the code
+    /// calls unconverged.
+    #[serde(default)]
+    pub unsettled_texels: u64,
     /// Differences between the two sides of chart borders.
     pub seams: SeamEntry,
     /// The scene with ambient visibility at its vertices, if requested.
