@@ -253,7 +253,8 @@ fn disc_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
             if is_point_sun { ("hard", String::new()) } else { ("soft", format!(", frame.width_t * {chord:?}")) };
         let _ = writeln!(
             text,
-            "    visibility += {weight:?} * {kind}_visibility(rise_map, fall_map, texel, vec2<i32>({first}, {end}), frame.t{width});"
+            "    visibility += {weight:?} * {kind}_visibility(rise_map, fall_map, texel, vec2<i32>({first}, {end}), \
+             frame.t{width});"
         );
         first = end;
     }

@@ -171,8 +171,8 @@ macro_rules! offsets {
 fn uniforms_have_one_layout_in_rust_and_wgsl() {
     let module = validated(&sky_shader());
     let rust = offsets!(FrameUniform: clip_from_eye, eye_m, pixel_angle_rad, ray_first, t, ray_per_column, width_t,
-        ray_per_row, sun_cos_radius, sun_direction, inverse_angular_diameter, sun_light, sky_light, ground_light, zenith,
-        horizon, glow, haze);
+        ray_per_row, sun_cos_radius, sun_direction, inverse_angular_diameter, sun_light, sky_light, ground_light,
+        zenith, horizon, glow, haze);
     assert_eq!(members(&module, "Frame"), (rust, size_of::<FrameUniform>() as u32));
     let page = PageVariant { max_code: 255, lamp_layer_count: 1, ..PageVariant::default() };
     let lit = validated(&lamp_visibility_shader(SurfaceVariant::default(), &page, Filter::Bilinear));

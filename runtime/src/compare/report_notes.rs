@@ -19,8 +19,8 @@ const WHOLE_CARDS: &str = "Shadow volumes ignore alpha masks, so a leaf casts th
 const HARD: &str = "Techniques that take the sun for a point draw no penumbras. Against the sun's disc they have \
                     errors there however well they work. Their error against truth of the sun's centre stands beside.";
 const TIMES: &str = "Times are of a sun that moves: shadow maps and silhouettes are computed again for each frame; \
-                     under a sun that stands still they would be kept. All techniques but rays draw the same depths and \
-                     surfaces. A ray's time is the CPU's, once it is known which surface each pixel shows. Only \
+                     under a sun that stands still they would be kept. All techniques but rays draw the same depths \
+                     and surfaces. A ray's time is the CPU's, once it is known which surface each pixel shows. Only \
                      visibility is drawn, not the lit picture.";
 
 /// The scene, and the sets of it.
