@@ -137,9 +137,9 @@ pub struct LookArgs {
     /// Width and height in pixels, each 1 to 16384.
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "1280x720")]
     pub size: [u32; 2],
-    /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`.
+    /// A camera of the scene by name or as `camera:N`, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`.
     ///
-    /// The numbers are the eye and the point that it looks at, in metres of the scene's world space, and the vertical
+    /// `camera:0` is the scene's first camera: not all have names of their own. The numbers are the eye and the point that it looks at, in metres of the scene's world space, and the vertical
     /// field of view in degrees, 45 unless given. The default is the scene's first camera or, if it has none, a view
     /// from above that shows most of the scene.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, default_value = "default")]

@@ -65,10 +65,11 @@ pub fn shadow_edge_cameras(
         let camera = standing_back(&points, centre_m, towards(bearing_deg, height_deg), aspect)?;
         Some(NamedCamera { name: format!("from the {}", compass(stage, bearing_deg)), camera })
     });
-    let of_file = stage.scene.cameras.iter().enumerate().map(|(i, camera)| NamedCamera {
-        name: camera.name.clone().unwrap_or_else(|| format!("camera {i}")),
-        camera: Camera::from_scene(camera),
-    });
+    let of_file =
+        stage.scene.cameras.iter().enumerate().map(|(i, camera)| NamedCamera {
+            name: Camera::label(&stage.scene, i),
+            camera: Camera::from_scene(camera),
+        });
     let default = NamedCamera { name: "default".into(), camera: Camera::default_of(stage, aspect) };
     let is_framed = stage.scene.cameras.is_empty();
     let all = of_file.chain(is_framed.then_some(default)).chain(wide);

@@ -43,8 +43,8 @@ pub struct CompareArgs {
     /// Unless given, five times from a low sun in the morning to one in the evening.
     #[arg(long, value_name = "HH:MM|T", value_parser = parse_when)]
     pub at: Vec<TimeChoice>,
-    /// A camera of the scene by name, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`. May be given several times. [default:
-    /// three]
+    /// A camera of the scene by name or as `camera:N`, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`. May be given several
+    /// times. [default: three]
     ///
     /// Unless given, three cameras that see the edges of shadows: the scene's own, all of it, or a part from close by.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, allow_hyphen_values = true)]
