@@ -93,12 +93,12 @@ pub enum Warning {
     },
     /// The file's own coordinates could not be used.
     #[error(
-        "TEXCOORD_1 of {meshes} meshes tiles, overlaps, has no area or has islands too close together: \
-         they were unwrapped"
+        "TEXCOORD_1 of {} tiles, overlaps, has no area or has islands too close together: unwrapped",
+        some_of(meshes)
     )]
     Unwrapped {
-        /// Of how many meshes.
-        meshes: usize,
+        /// The meshes' labels, each once.
+        meshes: Vec<String>,
     },
     /// Nearly nothing sees the sun.
     #[error(
@@ -146,6 +146,14 @@ pub enum Warning {
         /// What it came to on some pages.
         used: u32,
     },
+}
+
+/// The first three of some things, and how many more there are.
+fn some_of(labels: &[String]) -> String {
+    match labels.len() {
+        0..=3 => labels.join(", "),
+        count => format!("{} and {} more", labels[..3].join(", "), count - 3),
+    }
 }
 
 /// Most layers that may be asked for.

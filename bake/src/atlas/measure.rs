@@ -50,7 +50,7 @@ pub(super) fn fit_warning(
         meshes: short.len(),
         page_size_texels: settings.page_size_texels,
         asked_per_metre: asked,
-        mesh: mesh.name.clone().unwrap_or_else(|| "without a name".into()),
+        mesh: mesh.label(),
         reached_per_metre: *least,
     })
 }
@@ -74,6 +74,7 @@ pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[
     let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
     let is_refused =
         |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
-    let count = items.iter().filter(is_refused).count();
-    (settings.keeps_existing && count > 0).then_some(Warning::Unwrapped { meshes: count })
+    let mut meshes: Vec<String> = items.iter().filter(is_refused).map(|item| mesh(item).label()).collect();
+    meshes.dedup();
+    (settings.keeps_existing && !meshes.is_empty()).then_some(Warning::Unwrapped { meshes })
 }

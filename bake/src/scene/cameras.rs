@@ -14,7 +14,8 @@ use serde_json::Value;
 pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<SceneCamera> {
     let mut cameras = Vec::new();
     for (node, (placed, &index)) in tree.nodes.iter().zip(&tree.file_index).enumerate() {
-        let Some(camera) = tree.file.get(index).and_then(|file| file.camera) else { continue };
+        let of_file = tree.file.get(index).filter(|_| tree.is_copy.get(node) == Some(&false));
+        let Some(camera) = of_file.and_then(|file| file.camera) else { continue };
         let place = place::<document::JsonCamera>(camera);
         let (camera, bake_from_camera) = match doc.get::<document::JsonCamera>(camera) {
             Ok(camera) => (camera, rigid(&placed.world_from_node, centre_m)),

@@ -46,7 +46,7 @@ pub(super) fn read(
         let is_needed = needed.contains(&file_index);
         let name = name(doc, file_index);
         match bytes(doc, file_index, buffers, fetcher, is_needed) {
-            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => return Err(error),
+            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) if is_needed => return Err(error),
             Err(error) if is_needed => {
                 decoded.insert(file_index, Decoded::Failed { name, cause: error.to_string(), has_no_alpha: false });
             }

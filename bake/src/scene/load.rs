@@ -49,9 +49,9 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
     refuse::check_required(&doc)?;
     let mut log = WarningLog::default();
     let mut fetcher = Fetcher::new(path, bytes, budget);
-    let buffers = Buffers::read(&doc, binary, &mut fetcher)?;
-    let tree = nodes::read(&doc, &mut log)?;
+    let buffers = Buffers::read(&doc, binary, &mut fetcher);
     let reader = Reader { doc: &doc, buffers: &buffers, budget };
+    let tree = nodes::read(reader, &mut log)?;
     let mut drawn = primitives::read(reader, &tree, &mut log)?;
     let triangle_count: u64 = drawn.draws.iter().map(|&(_, mesh)| triangle_count(&drawn, mesh)).sum();
     budget.take(triangle_count, BYTES_PER_TRIANGLE, || format!("placing {triangle_count} triangles"))?;

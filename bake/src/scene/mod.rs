@@ -31,6 +31,7 @@ mod document;
 mod error;
 mod geometry;
 mod images;
+mod instancing;
 mod limits;
 mod load;
 mod materials;
@@ -94,7 +95,8 @@ pub struct Scene {
 pub struct Source {
     /// File name without its folder.
     pub file_name: String,
-    /// SHA-256, in lower-case hex, over the file and then every external buffer and image it names, in file order.
+    /// SHA-256, in lower-case hex, over the file and then every external buffer and image it names, in file order, if it
+    /// could be read.
     pub sha256: String,
 }
 
@@ -137,6 +139,11 @@ impl Mesh {
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
+    }
+
+    /// What messages call it: its name in quotes, else its place in the file, as `meshes[3]`.
+    pub fn label(&self) -> String {
+        self.name.as_ref().map_or_else(|| format!("meshes[{}]", self.gltf.0), |name| format!("\"{name}\""))
     }
 }
 

@@ -6,17 +6,23 @@
 
 use super::{
     LoadError, Node,
+    accessors::Reader,
     document::{self, Document, place},
+    instancing,
     limits::WarningLog,
-    refuse,
 };
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
 /// Nodes of the drawn scene, parents before children, with their origin in the file.
+#[derive(Default)]
 pub(super) struct NodeTree {
     pub nodes: Vec<Node>,
-    /// For each node, its index in the file.
+    /// For each node, its index in the file; for a copy of a mesh, that of its parent.
     pub file_index: Vec<usize>,
+    /// For each node, the mesh of the file that it draws.
+    pub mesh: Vec<Option<usize>>,
+    /// For each node, whether it is a copy of a mesh (see `instancing.rs`) and no node of the file.
+    pub is_copy: Vec<bool>,
     /// All nodes of the file.
     pub file: Vec<document::JsonNode>,
 }
@@ -25,11 +31,12 @@ pub(super) struct NodeTree {
 const SINGULAR: f64 = 1e-12;
 
 /// Reads the default scene, else the first, else every node that has no parent.
-pub(super) fn read(doc: &Document, log: &mut WarningLog) -> Result<NodeTree, LoadError> {
+pub(super) fn read(reader: Reader, log: &mut WarningLog) -> Result<NodeTree, LoadError> {
+    let doc = reader.doc;
     let count = doc.count::<document::JsonNode>();
     let file: Vec<document::JsonNode> = (0..count).map(|index| doc.get(index)).collect::<Result<_, _>>()?;
     let roots = roots(doc, &file)?;
-    walk(file, roots, log)
+    walk(reader, file, roots, log)
 }
 
 fn roots(doc: &Document, file: &[document::JsonNode]) -> Result<Vec<usize>, LoadError> {
@@ -69,8 +76,13 @@ enum WalkStep {
     Leave { index: usize },
 }
 
-fn walk(file: Vec<document::JsonNode>, roots: Vec<usize>, log: &mut WarningLog) -> Result<NodeTree, LoadError> {
-    let mut tree = NodeTree { nodes: Vec::new(), file_index: Vec::new(), file };
+fn walk(
+    reader: Reader,
+    file: Vec<document::JsonNode>,
+    roots: Vec<usize>,
+    log: &mut WarningLog,
+) -> Result<NodeTree, LoadError> {
+    let mut tree = NodeTree { file, ..NodeTree::default() };
     let mut marks = vec![Visit::Unseen; tree.file.len()];
     let enter = |index, parent| WalkStep::Enter { index, parent };
     let mut steps: Vec<WalkStep> = roots.into_iter().rev().map(|root| enter(root, None)).collect();
@@ -90,7 +102,7 @@ fn walk(file: Vec<document::JsonNode>, roots: Vec<usize>, log: &mut WarningLog) 
             Some(mark) => {
                 *mark = Visit::Open;
                 steps.push(WalkStep::Leave { index });
-                if let Some(node) = tree.add(index, parent, log)? {
+                if let Some(node) = tree.add(reader, index, parent, log)? {
                     let children = tree.file.get(index).and_then(|node| node.children.as_deref()).unwrap_or(&[]);
                     steps.extend(children.iter().rev().map(|&child| enter(child, Some(node))));
                 }
@@ -109,9 +121,14 @@ fn missing(tree: &NodeTree, index: usize, parent: Option<usize>) -> LoadError {
 
 impl NodeTree {
     /// Adds a node of the file; `None` if neither it nor any node below it is drawn.
-    fn add(&mut self, index: usize, parent: Option<usize>, log: &mut WarningLog) -> Result<Option<usize>, LoadError> {
+    fn add(
+        &mut self,
+        reader: Reader,
+        index: usize,
+        parent: Option<usize>,
+        log: &mut WarningLog,
+    ) -> Result<Option<usize>, LoadError> {
         let Some(node) = self.file.get(index) else { return Ok(None) };
-        refuse::check_node(node)?;
         if is_hidden(node) {
             return Ok(None);
         }
@@ -122,9 +139,32 @@ impl NodeTree {
             log.warn("its matrix is singular, so it was left out with all nodes below it", label(node, index));
             return Ok(None);
         }
-        self.nodes.push(Node { name: node.name.clone(), parent, parent_from_node, world_from_node });
-        self.file_index.push(index);
-        Ok(Some(self.nodes.len() - 1))
+        let copies = instancing::copies(reader, node, index)?;
+        let mesh = node.mesh;
+        let added = self.nodes.len();
+        let named = Node { name: node.name.clone(), parent, parent_from_node, world_from_node };
+        self.push(named, index, mesh.filter(|_| copies.is_none()), false);
+        for parent_from_node in copies.into_iter().flatten() {
+            let world_from_node = world_from_node * parent_from_node;
+            if is_invertible(&world_from_node) {
+                self.push(
+                    Node { name: None, parent: Some(added), parent_from_node, world_from_node },
+                    index,
+                    mesh,
+                    true,
+                );
+            } else {
+                log.warn("a copy of its mesh has a singular matrix; left out", place::<document::JsonNode>(index));
+            }
+        }
+        Ok(Some(added))
+    }
+
+    fn push(&mut self, node: Node, file_index: usize, mesh: Option<usize>, is_copy: bool) {
+        self.nodes.push(node);
+        self.file_index.push(file_index);
+        self.mesh.push(mesh);
+        self.is_copy.push(is_copy);
     }
 
     /// World matrices of all nodes of the file, drawn or not, since a skin's joints may be anywhere.

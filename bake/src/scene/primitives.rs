@@ -41,7 +41,7 @@ pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Res
     let mut skeletons = Skeletons::default();
     for (node, &file_index) in tree.file_index.iter().enumerate() {
         let Some(file) = tree.file.get(file_index) else { continue };
-        let Some(mesh_index) = file.mesh else { continue };
+        let Some(mesh_index) = tree.mesh.get(node).copied().flatten() else { continue };
         let is_posed = file.skin.is_some() || file.weights.is_some();
         let meshes = match known.entry((mesh_index, is_posed.then_some(node))) {
             Entry::Occupied(known) => known.into_mut(),

@@ -5,17 +5,17 @@
 
 use super::{
     LoadError,
-    document::{Document, JsonBufferView, JsonNode, JsonPrimitive},
+    document::{Document, JsonBufferView, JsonPrimitive},
 };
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Extensions that are read completely, or that affect neither geometry nor base colour.
-const HARMLESS: [&str; 14] = [
+const HARMLESS: [&str; 15] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
@@ -53,7 +53,6 @@ fn advice(name: &str) -> String {
         DRACO | "EXT_meshopt_compression" | "KHR_meshopt_compression" => "copy IN OUT.glb",
         "KHR_texture_basisu" => "ktxdecompress IN OUT.glb",
         "EXT_texture_webp" | "EXT_texture_avif" => "png IN OUT.glb --formats \"*\"",
-        INSTANCING => return "export the scene without GPU instancing, with one node for each copy".into(),
         _ => return "export the scene without it".into(),
     };
     format!("remove it: npx @gltf-transform/cli {command}")
@@ -75,14 +74,6 @@ pub(super) fn missing_buffer(view: &JsonBufferView, error: &LoadError) -> LoadEr
 pub(super) fn check_primitive(primitive: &JsonPrimitive, has_plain_positions: bool) -> Result<(), LoadError> {
     match has(primitive.extensions.as_ref(), DRACO) && !has_plain_positions {
         true => Err(refusal(DRACO)),
-        false => Ok(()),
-    }
-}
-
-/// Refuses GPU instancing on a drawn node, even if the file calls it optional: shadows would be missing.
-pub(super) fn check_node(node: &JsonNode) -> Result<(), LoadError> {
-    match node.mesh.is_some() && has(node.extensions.as_ref(), INSTANCING) {
-        true => Err(refusal(INSTANCING)),
         false => Ok(()),
     }
 }

@@ -161,13 +161,10 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// Reads every buffer. A buffer outside the scene's folder is an error even if nothing needs it.
-    pub fn read(doc: &Document, binary: Option<&'a [u8]>, fetcher: &mut Fetcher) -> Result<Self, LoadError> {
-        let one = |index| match read_buffer(doc, index, binary, fetcher) {
-            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => Err(error),
-            other => Ok(other),
-        };
-        Ok(Self { buffers: (0..doc.count::<document::JsonBuffer>()).map(one).collect::<Result<_, _>>()? })
+    /// Reads every buffer.
+    pub fn read(doc: &Document, binary: Option<&'a [u8]>, fetcher: &mut Fetcher) -> Self {
+        let count = doc.count::<document::JsonBuffer>();
+        Self { buffers: (0..count).map(|index| read_buffer(doc, index, binary, fetcher)).collect() }
     }
 
     /// The bytes of a buffer view, and its stride if it states one.

@@ -280,3 +280,36 @@ fn the_same_file_gives_the_same_hash_and_another_file_another() {
     assert_ne!(a.sha256, b.sha256);
     assert_eq!((a.file_name.as_str(), a.sha256.len()), ("built.glb", 64));
 }
+
+#[test]
+fn copies_by_gpu_instancing_are_plain_nodes() {
+    let quarter = std::f32::consts::FRAC_1_SQRT_2;
+    let (places, turns) =
+        ([[1.0f32, 2.0, 3.0], [-4.0, 0.5, 0.0]], [[0.0, quarter, 0.0, quarter], [0.0, 0.0, 0.0, 1.0]]);
+    let placed = json!({ "translation": [10, 0, 0], "scale": [2, 2, 2] });
+    let mut b = Builder::triangle(placed.clone());
+    let child = b.child(json!({ "name": "child", "translation": [0, 1, 0] }));
+    let attributes = json!({ "TRANSLATION": b.floats(&places), "ROTATION": b.floats(&turns) });
+    b.root["nodes"][0]["children"] = json!([child]);
+    b.root["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } });
+    b.root["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
+    let copied = b.scene();
+
+    let mut plain = Builder::new();
+    let mesh = plain.triangle_mesh(json!({}));
+    let copies: Vec<usize> =
+        (0..2).map(|i| plain.child(json!({ "mesh": mesh, "translation": places[i], "rotation": turns[i] }))).collect();
+    let child = plain.child(json!({ "name": "child", "translation": [0, 1, 0] }));
+    let mut parent = placed;
+    parent["children"] = json!([copies[0], copies[1], child]);
+    plain.node(parent);
+    let plain = plain.scene();
+
+    let nodes = |scene: &Scene| scene.nodes.iter().map(|n| (n.name.clone(), n.parent)).collect::<Vec<_>>();
+    assert_eq!(nodes(&copied), nodes(&plain));
+    assert_eq!((copied.meshes.len(), copied.instances.len()), (1, 2));
+    for (a, b) in copied.instances.iter().zip(&plain.instances) {
+        assert_eq!(a.node, b.node);
+        assert!(a.bake_from_object.abs_diff_eq(b.bake_from_object, 1e-6), "{:?}", [a, b]);
+    }
+}

@@ -192,7 +192,6 @@ fn extensions_that_change_geometry_are_refused_by_name_with_the_command_that_rem
         ("EXT_meshopt_compression", "npx @gltf-transform/cli copy IN OUT.glb"),
         ("KHR_texture_basisu", "npx @gltf-transform/cli ktxdecompress IN OUT.glb"),
         ("EXT_texture_webp", "npx @gltf-transform/cli png IN OUT.glb"),
-        ("EXT_mesh_gpu_instancing", "one node for each copy"),
         ("VENDOR_new_idea", "export the scene without it"),
     ] {
         let mut b = Builder::triangle(json!({}));
@@ -227,10 +226,16 @@ fn compressed_geometry_without_a_plain_copy_is_refused_even_if_it_is_called_opti
     b.root["bufferViews"][0] =
         json!({ "buffer": 1, "byteLength": 36, "extensions": { "EXT_meshopt_compression": {} } });
     assert!(b.refusal().contains("EXT_meshopt_compression"), "{}", b.refusal());
-    let mut b = Builder::triangle(json!({ "extensions": { "EXT_mesh_gpu_instancing": {} } }));
-    assert!(b.refusal().contains("EXT_mesh_gpu_instancing"), "{}", b.refusal());
-    b.root["nodes"][0].as_object_mut().expect("node").remove("extensions");
-    b.scene();
+}
+
+#[test]
+fn copies_of_a_mesh_need_attributes_of_one_length() {
+    let mut b = Builder::triangle(json!({}));
+    let (three, two) = (b.floats(&[[0.0; 3]; 3]), b.floats(&[[1.0; 3]; 2]));
+    b.root["nodes"][0]["extensions"] =
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": three, "SCALE": two } } });
+    let message = b.refusal();
+    assert!(message.contains("nodes[0]") && message.contains("3 and 2 entries"), "{message}");
 }
 
 /// Loads a triangle whose buffer is named by a URI, from a folder that has these files.
@@ -298,12 +303,32 @@ fn missing_and_short_buffers_are_named() {
 }
 
 #[test]
-fn a_missing_buffer_that_nothing_drawn_needs_stops_no_bake() {
-    let mut b = Builder::triangle(json!({}));
-    b.root["buffers"] = json!([{ "byteLength": 36 }, { "byteLength": 9, "uri": "animation.bin" }]);
-    b.push("bufferViews", json!({ "buffer": 1, "byteLength": 9 }));
-    b.push("accessors", json!("this is no accessor"));
-    b.scene();
+fn buffers_and_pictures_that_nothing_drawn_needs_stop_no_bake() {
+    for uri in ["animation.bin", "../shared/animation.bin", "https://example.com/animation.bin", "data:;base64,*"] {
+        let mut b = Builder::triangle(json!({}));
+        b.root["buffers"] = json!([{ "byteLength": 36 }, { "byteLength": 9, "uri": uri }]);
+        b.push("bufferViews", json!({ "buffer": 1, "byteLength": 9 }));
+        b.push("accessors", json!("this is no accessor"));
+        b.root["images"] = json!([{ "uri": uri }]);
+        b.push("textures", json!({ "source": 0 }));
+        b.root["materials"] = json!([{ "normalTexture": { "index": 0 } }]);
+        b.root["meshes"][0]["primitives"][0]["material"] = json!(0);
+        let scene = b.scene();
+        assert!(scene.images.is_empty() && scene.warnings.is_empty(), "{uri}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn a_picture_that_is_drawn_is_not_fetched_from_elsewhere() {
+    for uri in ["../textures/brick.png", "https://example.com/brick.png"] {
+        let mut b = Builder::triangle(json!({}));
+        b.root["meshes"][0]["primitives"][0]["material"] = json!(0);
+        b.root["images"] = json!([{ "uri": uri }]);
+        b.push("textures", json!({ "source": 0 }));
+        b.root["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+        let message = b.refusal();
+        assert!(message.contains("images[0]") && message.contains(uri), "{message}");
+    }
 }
 
 #[test]
