@@ -13,7 +13,6 @@ fn copy_crate(folder: &Path) {
     let template = workspace.join("tests/outside");
     let manifest = std::fs::read_to_string(template.join("Cargo.toml.in")).expect("the template has a manifest");
     let manifest = manifest.replace("@WORKSPACE@", &workspace.display().to_string().replace('\\', "/"));
-    let manifest = format!("{manifest}{}", profile(&workspace));
     std::fs::write(folder.join("Cargo.toml"), manifest).expect("a folder to write in");
     std::fs::create_dir(folder.join("src")).expect("a folder to write in");
     let files = [
@@ -27,24 +26,15 @@ fn copy_crate(folder: &Path) {
     }
 }
 
-/// The workspace's profile for tests, but for the libraries, which are not optimised: a box takes no time to bake.
-fn profile(workspace: &Path) -> String {
-    let manifest = std::fs::read_to_string(workspace.join("Cargo.toml")).expect("the workspace has a manifest");
-    let (_, profile) = manifest.split_once("[profile.dev]").expect("it has a profile for tests");
-    let (profile, _) = profile.split_once("[profile.release]").expect("another profile follows");
-    let plain = ["sunbake", "sunbake-runtime", "sunbake-shaders"].map(|name| format!("{name} = {{ opt-level = 0 }}"));
-    format!("[profile.dev]{profile}{}\n", plain.join("\n"))
-}
-
 #[test]
 fn a_crate_outside_bakes_in_memory_and_draws_with_its_own_device() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     copy_crate(folder.path());
-    let target = workspace().canonicalize().expect("the workspace is there").join("target");
+    let target = workspace().canonicalize().expect("the workspace is there").join("target/outside");
     let output = Command::new(env!("CARGO"))
         .args(["run", "--quiet", "--offline"])
         .current_dir(folder.path())
-        // The workspace's own: what both depend on with the same features is there.
+        // Kept between runs, so that only the first takes more than seconds.
         .env("CARGO_TARGET_DIR", target)
         .output()
         .expect("cargo runs");
