@@ -65,6 +65,22 @@ fn volumes_and_truth_draw_one_mask_and_the_plan_is_printed() {
 }
 
 #[test]
+fn nothing_is_printed_about_a_display_that_is_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("picture.png");
+    let output = Command::new(env!("CARGO_BIN_EXE_sunplay"))
+        .env_remove("XDG_RUNTIME_DIR")
+        .arg("frame")
+        .arg(scene())
+        .args(["--technique", "map", "--at", "17:00", "--size", "16x16", "-q", "-o"])
+        .arg(&picture)
+        .output()
+        .expect("sunplay runs");
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+    assert!(picture.exists());
+}
+
+#[test]
 fn impossible_requests_are_refused_with_advice() {
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("picture.png");

@@ -7,6 +7,7 @@ mod draw;
 mod files;
 mod frame;
 mod frames;
+mod no_display;
 mod place;
 mod values;
 mod when;
@@ -28,6 +29,7 @@ sunplay plays sunbake's maps back at any time of the day.
 
 /// Runs the command that the process was started with.
 pub fn run() -> ExitCode {
+    no_display::answer_that_there_is_none();
     console::Command::Sunplay.run(BASICS, |args: Args| match args.command {
         Command::Frame(args) => frame::run(&args),
         Command::Frames(args) => frames::run(&args),
