@@ -55,7 +55,7 @@ impl Explain for BakeError {
             Self::Atlas(error) => error.class(),
             Self::TooLarge(error) => error.class(),
             Self::Write(error) => error.class(),
-            Self::TwoLamps | Self::LampEngine(_) | Self::NoSuchMaterial { .. } => ErrorClass::Usage,
+            Self::TwoLamps | Self::LampEngine(_) | Self::NothingNamed { .. } => ErrorClass::Usage,
             Self::Memory { .. } => ErrorClass::BadInput,
             Self::Threads { .. } | Self::NoExr => ErrorClass::Unavailable,
             Self::Cancelled => ErrorClass::Cancelled,
@@ -76,7 +76,7 @@ impl Explain for BakeError {
                 Remedy::Set(Setting::Engine, "exact".into()),
                 Remedy::Set(Setting::Engine, "rays:N".into()),
             ])),
-            Self::NoSuchMaterial { .. } => Some(Remedy::Change(Setting::LeaveOut)),
+            Self::NothingNamed { .. } => Some(Remedy::Change(Setting::LeaveOut)),
             Self::Memory { smaller, .. } => {
                 let smaller = smaller.iter().map(|&setting| Remedy::Lower(setting));
                 Some(Remedy::AnyOf(smaller.chain([Remedy::Raise(Setting::MaxMemory)]).collect()))

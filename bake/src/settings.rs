@@ -16,7 +16,8 @@ pub struct BakeSettings {
     /// A lamp beside the sun: the text of its path file, see [`crate::lamp::parse_lamp`]. Takes a light's time and
     /// bytes.
     pub lamp: Option<String>,
-    /// Names of materials that are neither drawn nor baked and cast nothing: outline hulls, sky domes. Usually none.
+    /// What is neither drawn nor baked and casts nothing: outline hulls, sky domes, collision shells. Names as
+    /// [`crate::scene::Selection`] reads them; usually none.
     pub leave_out: Vec<String>,
     /// Density of texels. Time and bytes grow with the number of texels, so with its square.
     pub density: Density,

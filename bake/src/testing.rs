@@ -58,7 +58,13 @@ impl SceneBuilder {
         mesh.gltf = (scene.meshes.len(), 0);
         scene.meshes.push(mesh);
         for &matrix in world_from_object {
-            let node = Node { name: None, parent: None, parent_from_node: matrix, world_from_node: matrix };
+            let node = Node {
+                name: None,
+                gltf: scene.nodes.len(),
+                parent: None,
+                parent_from_node: matrix,
+                world_from_node: matrix,
+            };
             scene.nodes.push(node);
             scene.instances.push(Instance {
                 node: scene.nodes.len() - 1,
@@ -118,6 +124,7 @@ fn png_of(width: u32, height: u32, rgba: &[[u8; 4]]) -> Vec<u8> {
 pub fn opaque() -> Material {
     Material {
         name: None,
+        gltf: None,
         base_color: Vec4::new(0.5, 0.5, 0.5, 1.0),
         base_color_texture: None,
         emissive: Vec3::ZERO,

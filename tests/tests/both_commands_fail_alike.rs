@@ -59,7 +59,7 @@ const MISTAKES: [Mistake; 19] = [
         name: "an unknown material",
         arguments: ["bake scene.glb -o out --leave-out hull", "compare scene.glb -o out --leave-out hull"],
         code: 1,
-        words: &["no material named \"hull\"", "give another --leave-out"],
+        words: &["no material, node or mesh named \"hull\"", "give another --leave-out"],
     },
     Mistake {
         name: "a scene that is missing",

@@ -37,12 +37,12 @@ pub enum BakeError {
     /// The scene's light makes no path.
     #[error(transparent)]
     Light(#[from] LightError),
-    /// A material to be left out is not there.
-    #[error("the scene has no material named {name:?} to leave out; it has: {known}")]
-    NoSuchMaterial {
-        /// The name given with `--leave-out`.
+    /// What is to be left out is not there.
+    #[error("the scene has no material, node or mesh named {name:?} to leave out; it has {known}")]
+    NothingNamed {
+        /// The name that was given.
         name: String,
-        /// Names there are, as far as fits.
+        /// What there is, as far as fits.
         known: String,
     },
     /// The scene cannot be laid out.

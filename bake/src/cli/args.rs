@@ -83,10 +83,11 @@ pub struct BakeArgs {
     /// Defaults of the options below.
     #[arg(long, value_enum, default_value_t = Preset::Standard)]
     pub preset: Preset,
-    /// Leave a material out: it is not drawn, not baked and casts nothing. May be given several times.
+    /// Leave a material, node or mesh out: it is not drawn, not baked and casts nothing. May be given several times.
     ///
-    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells.
-    #[arg(long, value_name = "MATERIAL")]
+    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells. NAME may hold `*` for any
+    /// text; what has no name is material:3, node:12 or mesh:0, by its index in the file. A node takes all below it.
+    #[arg(long, value_name = "NAME")]
     pub leave_out: Vec<String>,
     #[command(flatten)]
     pub sun: PathArgs,
@@ -281,8 +282,8 @@ pub struct CostCommandArgs {
     /// listed with its prediction. Reading the scene and unwrapping it are not limited.
     #[arg(long, value_name = "S", default_value = "600", value_parser = parse_budget)]
     pub budget: f64,
-    /// Leave a material out, as in `bake`. May be given several times.
-    #[arg(long, value_name = "MATERIAL")]
+    /// Leave a material, node or mesh out, as in `bake`. May be given several times.
+    #[arg(long, value_name = "NAME")]
     pub leave_out: Vec<String>,
     #[command(flatten)]
     pub sun: PathArgs,

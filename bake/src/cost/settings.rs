@@ -7,7 +7,7 @@ use crate::settings::{BakeSettings, SunRequest};
 pub struct CostSettings {
     /// Which sun.
     pub sun: SunRequest,
-    /// Names of materials that are left out, see [`BakeSettings::leave_out`].
+    /// What is left out, see [`BakeSettings::leave_out`].
     pub leave_out: Vec<String>,
     /// Edge of the page whose texels the sweeps sample, 64 to 16384, usually that of the standard preset.
     pub page_size_texels: u32,

@@ -59,6 +59,7 @@ fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMate
     let strength = file.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength).unwrap_or(1.0);
     let mut material = Material {
         name: file.name.clone(),
+        gltf: (index != usize::MAX).then_some(index),
         base_color: Vec4::ONE,
         base_color_texture: None,
         emissive: Vec3::from_array(file.emissive_factor.unwrap_or_default()).clamp(Vec3::ZERO, Vec3::ONE)

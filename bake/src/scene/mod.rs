@@ -35,6 +35,7 @@ mod instancing;
 mod limits;
 mod load;
 mod materials;
+mod names;
 mod nodes;
 mod normals;
 mod pose;
@@ -51,6 +52,7 @@ pub use geometry::{Geometry, SurfaceTriangle};
 pub use limits::{LoadLimits, SceneWarning};
 pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
+pub use names::{Selection, names};
 pub use resources::sha256;
 pub use shading::ShadingNormals;
 
@@ -105,6 +107,8 @@ pub struct Source {
 pub struct Node {
     /// Name, if the file gives one.
     pub name: Option<String>,
+    /// Index in the file's nodes; of a copy of a mesh, its parent's.
+    pub gltf: usize,
     /// Index of the parent in [`Scene::nodes`]; always smaller than the node's own.
     pub parent: Option<usize>,
     /// The node's own transform. Nodes with a singular matrix are left out, with all nodes below them.
@@ -165,6 +169,8 @@ pub struct Instance {
 pub struct Material {
     /// Name, if any.
     pub name: Option<String>,
+    /// Index in the file's materials; none for glTF's default material.
+    pub gltf: Option<usize>,
     /// Linear RGB and alpha.
     pub base_color: Vec4,
     /// Multiplied with `base_color` (the texture is sRGB, its alpha linear).

@@ -142,13 +142,13 @@ impl NodeTree {
         let copies = instancing::copies(reader, node, index)?;
         let mesh = node.mesh;
         let added = self.nodes.len();
-        let named = Node { name: node.name.clone(), parent, parent_from_node, world_from_node };
+        let named = Node { name: node.name.clone(), gltf: index, parent, parent_from_node, world_from_node };
         self.push(named, index, mesh.filter(|_| copies.is_none()), false);
         for parent_from_node in copies.into_iter().flatten() {
             let world_from_node = world_from_node * parent_from_node;
             if is_invertible(&world_from_node) {
                 self.push(
-                    Node { name: None, parent: Some(added), parent_from_node, world_from_node },
+                    Node { name: None, gltf: index, parent: Some(added), parent_from_node, world_from_node },
                     index,
                     mesh,
                     true,

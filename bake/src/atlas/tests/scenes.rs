@@ -21,7 +21,13 @@ pub fn scene(parts: Vec<(Mesh, Vec<DMat4>)>) -> Scene {
     };
     for (mesh, matrices) in parts {
         for matrix in matrices {
-            scene.nodes.push(Node { name: None, parent: None, parent_from_node: matrix, world_from_node: matrix });
+            scene.nodes.push(Node {
+                name: None,
+                gltf: scene.nodes.len(),
+                parent: None,
+                parent_from_node: matrix,
+                world_from_node: matrix,
+            });
             scene.instances.push(Instance {
                 node: scene.nodes.len() - 1,
                 mesh: scene.meshes.len(),
@@ -37,6 +43,7 @@ pub fn scene(parts: Vec<(Mesh, Vec<DMat4>)>) -> Scene {
 fn material(alpha: Alpha) -> Material {
     Material {
         name: None,
+        gltf: None,
         base_color: Vec4::ONE,
         base_color_texture: None,
         emissive: Vec3::ZERO,

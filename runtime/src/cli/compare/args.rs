@@ -62,10 +62,12 @@ pub struct CompareArgs {
     /// Of a scene: edge of the page it is baked into, 64 to 16384. [default: 2048]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(64..=16384))]
     pub page_size: Option<u32>,
-    /// Of a scene: leave a material out; it is not drawn, not baked and casts nothing. May be given several times.
+    /// Of a scene: leave a material, node or mesh out; it is not drawn, not baked and casts nothing. May be given
+    /// several times.
     ///
-    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells.
-    #[arg(long, value_name = "MATERIAL")]
+    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells. NAME is read as by
+    /// `sunbake bake`.
+    #[arg(long, value_name = "NAME")]
     pub leave_out: Vec<String>,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.
     ///

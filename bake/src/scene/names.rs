@@ -1,0 +1,143 @@
+//! What a user calls parts of a scene.
+//!
+//! A name means every material, node and mesh that has it; in it, `*` stands for any text. A node stands for itself and
+//! all nodes below it. What has no name of its own has an index in its file: `material:3`, `node:12`, `mesh:0`.
+
+use super::Scene;
+
+/// Parts of a scene that a text names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selection {
+    /// Indices in [`Scene::materials`], ascending.
+    pub materials: Vec<usize>,
+    /// Indices in [`Scene::instances`] of what selected nodes and meshes draw, ascending.
+    pub instances: Vec<usize>,
+}
+
+impl Selection {
+    /// What a text names in a scene.
+    pub fn new(scene: &Scene, text: &str) -> Self {
+        let index = |list: &str| text.strip_prefix(list)?.strip_prefix(':')?.parse::<usize>().ok();
+        let [material, node, mesh] = ["material", "node", "mesh"].map(index);
+        let is_index = material.or(node).or(mesh).is_some();
+        let is_named = |name: &Option<String>| !is_index && name.as_ref().is_some_and(|name| matches(text, name));
+        let mut is_below = Vec::with_capacity(scene.nodes.len());
+        for one in &scene.nodes {
+            let is_parent = one.parent.is_some_and(|parent| is_below[parent]);
+            is_below.push(is_parent || node == Some(one.gltf) || is_named(&one.name));
+        }
+        let is_mesh = |index: usize| {
+            let one = &scene.meshes[index];
+            mesh == Some(one.gltf.0) || is_named(&one.name)
+        };
+        let is_material = |index: &usize| {
+            let one = &scene.materials[*index];
+            (material.is_some() && material == one.gltf) || is_named(&one.name)
+        };
+        let is_instance = |index: &usize| {
+            let one = &scene.instances[*index];
+            is_below[one.node] || is_mesh(one.mesh)
+        };
+        Self {
+            materials: (0..scene.materials.len()).filter(is_material).collect(),
+            instances: (0..scene.instances.len()).filter(is_instance).collect(),
+        }
+    }
+
+    /// Whether the text names nothing.
+    pub fn is_empty(&self) -> bool {
+        self.materials.is_empty() && self.instances.is_empty()
+    }
+}
+
+/// Names that a scene's parts have, each once: of materials, of nodes that draw, of meshes.
+pub fn names(scene: &Scene) -> [Vec<&str>; 3] {
+    let materials = scene.materials.iter().filter_map(|m| m.name.as_deref());
+    let nodes = scene.instances.iter().filter_map(|i| scene.nodes[i.node].name.as_deref());
+    let meshes = scene.meshes.iter().filter_map(|m| m.name.as_deref());
+    [materials.collect(), nodes.collect(), meshes.collect()].map(|mut all: Vec<&str>| {
+        let mut seen = std::collections::BTreeSet::new();
+        all.retain(|name| seen.insert(*name));
+        all
+    })
+}
+
+/// Whether a name fits a pattern, in which `*` stands for any text. A name that holds a `*` fits itself.
+fn matches(pattern: &str, name: &str) -> bool {
+    let Some((start, rest)) = pattern.split_once('*') else { return pattern == name };
+    let Some(mut left) = name.strip_prefix(start) else { return false };
+    let mut parts = rest.split('*').peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_none() {
+            return left.ends_with(part);
+        }
+        // The first place will do: what follows has the most room then.
+        let Some(at) = left.find(part) else { return false };
+        left = &left[at + part.len()..];
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+    use crate::testing::{SceneBuilder, block, opaque};
+    use glam::Vec3;
+
+    #[test]
+    fn a_star_stands_for_any_text() {
+        for (pattern, name, fits) in [
+            ("wall", "wall", true),
+            ("wall", "Wall", false),
+            ("wall*", "wall_3", true),
+            ("*_3", "wall_3", true),
+            ("*", "", true),
+            ("w*l*3", "wall_3", true),
+            ("a*a", "a", false),
+            ("*ab", "aab", true),
+            ("*a*b*", "xbxa", false),
+            ("**", "any", true),
+            ("", "any", false),
+            ("UCX_*", "UCX_crate", true),
+            ("a*b", "a*b", true),
+        ] {
+            assert_eq!(matches(pattern, name), fits, "{pattern} {name}");
+        }
+    }
+
+    /// Two blocks: `crate` under a node `yard`, with the material `wood`; and one without names, of mesh 7.
+    fn scene() -> Scene {
+        let wood = Material { name: Some("wood".into()), gltf: Some(3), ..opaque() };
+        let mut scene = SceneBuilder::new()
+            .soup_of(&block(Vec3::ZERO, Vec3::ONE), wood)
+            .soup_of(&block(Vec3::splat(2.0), Vec3::splat(3.0)), opaque())
+            .build();
+        scene.nodes[0].name = Some("yard".into());
+        scene.nodes[1].parent = Some(0);
+        scene.nodes[1].gltf = 12;
+        scene.meshes[0].name = Some("crate".into());
+        scene.meshes[1].gltf = (7, 0);
+        scene
+    }
+
+    #[test]
+    fn materials_nodes_and_meshes_have_names_or_indices() {
+        let scene = scene();
+        for (text, materials, instances) in [
+            ("wood", vec![0], vec![]),
+            ("material:3", vec![0], vec![]),
+            ("crate", vec![], vec![0]),
+            ("cr*", vec![], vec![0]),
+            ("mesh:7", vec![], vec![1]),
+            ("node:12", vec![], vec![1]),
+            ("yard", vec![], vec![0, 1]),
+            ("*", vec![0], vec![0, 1]),
+            ("node:5", vec![], vec![]),
+            ("barn", vec![], vec![]),
+        ] {
+            assert_eq!(Selection::new(&scene, text), Selection { materials, instances }, "{text}");
+        }
+        assert_eq!(names(&scene), [vec!["wood"], vec!["yard"], vec!["crate"]]);
+    }
+}
