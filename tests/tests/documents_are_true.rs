@@ -1,5 +1,5 @@
 //! Documents: links resolve, lengths and widths are bounded, the format names every field, the code for engines is
-//! the code that is tested, and no renamed word is left.
+//! the code that is tested, and no renamed word is left, in code neither.
 
 use std::path::{Path, PathBuf};
 
@@ -60,6 +60,35 @@ fn documents_are_short_and_use_the_words_of_the_code() {
         let is_bound = |line: &&str| !line.starts_with(['|', '!']) && !line.contains("](");
         let wide = prose(&text).filter(is_bound).find(|line| line.chars().count() > 100);
         assert_eq!(wide, None, "{} has a line of over 100 columns", path.display());
+        let old = RENAMED.iter().map(|parts| parts.concat()).find(|word| text.contains(word));
+        assert_eq!(old, None, "{} has a word that was renamed", path.display());
+    }
+}
+
+/// Adds every file of code below a folder.
+fn add_code(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            add_code(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs" || extension == "wgsl") {
+            files.push(path);
+        }
+    }
+}
+
+/// The formatter leaves comments and strings as they are.
+#[test]
+fn lines_of_code_have_at_most_120_columns_and_the_words_of_today() {
+    let mut files = Vec::new();
+    for folder in ["bake", "runtime", "shaders", "tests", "assets"] {
+        add_code(&Path::new(ROOT).join(folder), &mut files);
+    }
+    assert!(files.len() > 300, "only {} files were found", files.len());
+    for path in files {
+        let text = read(&path);
+        let wide = text.lines().find(|line| line.chars().count() > 120);
+        assert_eq!(wide, None, "{} has a line of over 120 columns", path.display());
         let old = RENAMED.iter().map(|parts| parts.concat()).find(|word| text.contains(word));
         assert_eq!(old, None, "{} has a word that was renamed", path.display());
     }

@@ -165,7 +165,8 @@ mod tests {
         let html = table.html();
         for part in [
             "<caption>A &amp; B</caption>",
-            "<th scope=\"col\" class=\"number\" title=\"by the &quot;clock&quot;\">time <span class=\"unit\">s</span></th>",
+            "<th scope=\"col\" class=\"number\" title=\"by the &quot;clock&quot;\">\
+             time <span class=\"unit\">s</span></th>",
             "<tr class=\"marked\" id=\"a\" data-kind=\"&lt;x&gt;\"><td></td><td class=\"number\"></td></tr>",
             "<td>&lt;b&gt;</td><td class=\"number\" data-value=\"1.5\">1.5</td>",
             "<td class=\"number\">?</td>",

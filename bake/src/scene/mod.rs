@@ -7,7 +7,7 @@
 //! | space | origin and unit | numbers | used by |
 //! |---|---|---|---|
 //! | **world** | the file's own; metres | `f64` | nodes, sun and lamp paths, manifests, printed texels |
-//! | **bake** | the scene's centre, [`Scene::centre_m`]; metres | `f32` corners, `f64` points | tracing, sampling, drawing |
+//! | **bake** | [`Scene::centre_m`]; metres | `f32` corners, `f64` points | tracing, sampling, drawing |
 //! | **tracer** | as bake; scaled by a power of two | `f32` corners, `f64` rays | [`crate::trace`], the exact engines |
 //!
 //! * **World** is glTF's: right-handed, +Y up. North is -Z and east +X, unless a sun path turns them. Coordinates may
@@ -97,7 +97,7 @@ pub struct Scene {
 pub struct Source {
     /// File name without its folder.
     pub file_name: String,
-    /// SHA-256, in lower-case hex, over the file and then every external buffer and image it names, in file order, if it
+    /// SHA-256, in lower-case hex, over the file and then, in file order, every external buffer and image it names that
     /// could be read.
     pub sha256: String,
 }

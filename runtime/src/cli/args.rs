@@ -139,9 +139,10 @@ pub struct LookArgs {
     pub size: [u32; 2],
     /// A camera of the scene by name or as `camera:N`, `default`, or `ex,ey,ez,tx,ty,tz[,fov]`.
     ///
-    /// `camera:0` is the scene's first camera: not all have names of their own. The numbers are the eye and the point that it looks at, in metres of the scene's world space, and the vertical
-    /// field of view in degrees, 45 unless given. The default is the scene's first camera or, if it has none, a view
-    /// from above that shows most of the scene.
+    /// `camera:0` is the scene's first camera: not all have names of their own. The numbers are the eye and the point
+    /// that it looks at, in metres of the scene's world space, and the vertical field of view in degrees, 45 unless
+    /// given. The default is the scene's first camera or, if it has none, a view from above that shows most of the
+    /// scene.
     #[arg(long, value_name = "CAMERA", value_parser = parse_camera, default_value = "default")]
     #[arg(allow_hyphen_values = true)]
     pub camera: CameraChoice,

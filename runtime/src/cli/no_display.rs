@@ -1,8 +1,8 @@
 //! Keeps a line about `XDG_RUNTIME_DIR` off stderr where there is no desktop.
 //!
-//! Mesa's Vulkan layer that sorts devices looks for a Wayland display, and Wayland's library prints that the variable is
-//! not set: in containers, over ssh, in CI. A folder that does not exist answers the question without a word. A process
-//! cannot safely change its own environment, so it starts itself again, in its own place.
+//! Mesa's Vulkan layer that sorts devices looks for a Wayland display, and Wayland's library prints that the variable
+//! is not set: in containers, over ssh, in CI. If it names a folder that does not exist, nothing is printed. A process
+//! cannot safely change its own environment, so it replaces itself by a new one of the same program.
 
 /// Starts the program again with the variable set, if it is not; returns if there is nothing to do or it failed.
 #[cfg(target_os = "linux")]
@@ -12,7 +12,7 @@ pub fn answer_that_there_is_none() {
     let mut arguments = std::env::args_os();
     let (Some(name), Ok(program)) = (arguments.next(), std::env::current_exe()) else { return };
     if std::env::var_os(VARIABLE).is_none() {
-        // Comes back only with an error, and then the line is printed as ever.
+        // Returns only if it fails; the line is printed then.
         let _ = std::process::Command::new(program).arg0(name).args(arguments).env(VARIABLE, "/nonexistent").exec();
     }
 }
