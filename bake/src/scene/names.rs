@@ -124,15 +124,16 @@ mod tests {
     #[test]
     fn materials_nodes_and_meshes_have_names_or_indices() {
         let scene = scene();
+        let wood = scene.meshes[0].material;
         for (text, materials, instances) in [
-            ("wood", vec![0], vec![]),
-            ("material:3", vec![0], vec![]),
+            ("wood", vec![wood], vec![]),
+            ("material:3", vec![wood], vec![]),
             ("crate", vec![], vec![0]),
             ("cr*", vec![], vec![0]),
             ("mesh:7", vec![], vec![1]),
             ("node:12", vec![], vec![1]),
             ("yard", vec![], vec![0, 1]),
-            ("*", vec![0], vec![0, 1]),
+            ("*", vec![wood], vec![0, 1]),
             ("node:5", vec![], vec![]),
             ("barn", vec![], vec![]),
         ] {
