@@ -1,7 +1,7 @@
 //! What a caller should know of a bake that went well all the same.
 
 use crate::remedy::{Remedy, Setting};
-use crate::scene::SceneWarning;
+use crate::scene::{SceneWarning, first_of};
 use crate::sun::Date;
 
 /// A light whose visibility is baked.
@@ -94,7 +94,7 @@ pub enum Warning {
     /// The file's own coordinates could not be used.
     #[error(
         "TEXCOORD_1 of {} tiles, overlaps, has no area or has islands too close together: unwrapped",
-        some_of(meshes)
+        first_of(meshes, 3)
     )]
     Unwrapped {
         /// The meshes' labels, each once.
@@ -146,14 +146,6 @@ pub enum Warning {
         /// What it came to on some pages.
         used: u32,
     },
-}
-
-/// The first three of some things, and how many more there are.
-fn some_of(labels: &[String]) -> String {
-    match labels.len() {
-        0..=3 => labels.join(", "),
-        count => format!("{} and {} more", labels[..3].join(", "), count - 3),
-    }
 }
 
 /// Most layers that may be asked for.

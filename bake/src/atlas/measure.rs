@@ -3,7 +3,7 @@
 use super::arrange::{AtlasMesh, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density};
-use crate::scene::Scene;
+use crate::scene::{Scene, each_once};
 use crate::warning::Warning;
 use rayon::prelude::*;
 
@@ -74,7 +74,6 @@ pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[
     let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
     let is_refused =
         |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
-    let mut meshes: Vec<String> = items.iter().filter(is_refused).map(|item| mesh(item).label()).collect();
-    meshes.dedup();
+    let meshes = each_once(items.iter().filter(is_refused).map(|item| mesh(item).label()).collect());
     (settings.keeps_existing && !meshes.is_empty()).then_some(Warning::Unwrapped { meshes })
 }

@@ -2,9 +2,9 @@
 //!
 //! Theory: a skyline with profiles. The skyline is the upper outline of all packed shapes, one height per column.
 //! Shapes, given by their lower and upper outlines, are placed largest first, each where its top is lowest, in the best
-//! of four turns. Space below that can no longer be reached is kept as [`FreeSpace`] for smaller shapes. Based on: Nöll
-//! and Stricker, "Efficient Packing of Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011, and
-//! Jylänki, "A Thousand Ways to Pack the Bin", 2010, section 4.
+//! of four turns. Space below that can no longer be reached is kept as [`FreeSpace`] for smaller shapes. Based on:
+//! Nöll and Stricker, "Efficient Packing of Arbitrarily Shaped Charts for Automatic Texture Atlas Generation", 2011,
+//! and Jylänki, "A Thousand Ways to Pack the Bin", 2010, section 4.
 //!
 //! Practice: most positions are rejected by one column that is too high, and with it all positions that cover the
 //! column, so the search skips past it. Small shapes are packed as boxes.

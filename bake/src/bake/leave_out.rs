@@ -2,8 +2,9 @@
 //! nor cast a shadow.
 
 use super::error::BakeError;
-use crate::scene::{Alpha, Material, Scene, Selection, names};
+use crate::scene::{Alpha, Material, Mesh, Scene, Selection, first_of, names};
 use crate::warning::Warning;
+use std::collections::BTreeMap;
 
 /// Share of texels that never see the sun above which a user is asked whether a shell shades the scene.
 const SUSPICIOUS_SHARE: f64 = 0.75;
@@ -19,9 +20,7 @@ pub(super) fn leave_out(scene: &mut Scene, texts: &[String]) -> Result<(), BakeE
             return Err(BakeError::NothingNamed { name: text.clone(), known: known(scene) });
         }
         selection.materials.iter().for_each(|&index| turn_into_air(&mut scene.materials[index]));
-        for instance in selection.instances {
-            leave_out_instance(scene, instance);
-        }
+        leave_out_instances(scene, &selection.instances);
     }
     Ok(())
 }
@@ -31,34 +30,40 @@ fn turn_into_air(material: &mut Material) {
     (material.alpha, material.base_color.w) = (Alpha::Invisible, 0.0);
 }
 
-/// Gives an instance a material of its own that is air, and a mesh of its own if others draw its mesh.
-fn leave_out_instance(scene: &mut Scene, instance: usize) {
-    let mesh = scene.instances[instance].mesh;
-    let material = scene.meshes[mesh].material;
-    if scene.materials[material].alpha == Alpha::Invisible {
-        return;
+/// Gives instances a material that is air: one copy of each of their materials. Those of a mesh that others draw too get
+/// one copy of that mesh.
+fn leave_out_instances(scene: &mut Scene, instances: &[usize]) {
+    let mut draws_of_mesh = vec![0; scene.meshes.len()];
+    scene.instances.iter().for_each(|instance| draws_of_mesh[instance.mesh] += 1);
+    let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    instances.iter().for_each(|&one| by_mesh.entry(scene.instances[one].mesh).or_default().push(one));
+    let mut air_of_material = BTreeMap::new();
+    for (mesh, instances) in by_mesh {
+        let material = scene.meshes[mesh].material;
+        if scene.materials[material].alpha == Alpha::Invisible {
+            continue;
+        }
+        let air = *air_of_material.entry(material).or_insert_with(|| {
+            scene.materials.push(scene.materials[material].clone());
+            scene.materials.last_mut().into_iter().for_each(turn_into_air);
+            scene.materials.len() - 1
+        });
+        if instances.len() < draws_of_mesh[mesh] {
+            let copy = scene.meshes.len();
+            scene.meshes.push(Mesh { material: air, ..scene.meshes[mesh].clone() });
+            instances.into_iter().for_each(|one| scene.instances[one].mesh = copy);
+        } else {
+            scene.meshes[mesh].material = air;
+        }
     }
-    let mut air = scene.materials[material].clone();
-    turn_into_air(&mut air);
-    scene.materials.push(air);
-    let is_shared = scene.instances.iter().filter(|other| other.mesh == mesh).nth(1).is_some();
-    if is_shared {
-        scene.meshes.push(scene.meshes[mesh].clone());
-        scene.instances[instance].mesh = scene.meshes.len() - 1;
-    }
-    let own = scene.instances[instance].mesh;
-    scene.meshes[own].material = scene.materials.len() - 1;
 }
 
 /// What a scene has to name, for a message.
 fn known(scene: &Scene) -> String {
     let kinds = ["materials", "nodes", "meshes"].into_iter().zip(names(scene));
-    let list = |(kind, names): (&str, Vec<&str>)| match names.len() {
-        0 => format!("no {kind} with names"),
-        count if count > MOST_NAMES => {
-            format!("{kind} {} and {} more", names[..MOST_NAMES].join(", "), count - MOST_NAMES)
-        }
-        _ => format!("{kind} {}", names.join(", ")),
+    let list = |(kind, names): (&str, Vec<&str>)| match names.is_empty() {
+        true => format!("no {kind} with names"),
+        false => format!("{kind} {}", first_of(&names, MOST_NAMES)),
     };
     kinds.map(list).collect::<Vec<_>>().join("; ")
 }
@@ -76,17 +81,22 @@ mod tests {
     use glam::{DMat4, DVec3, Vec3};
 
     #[test]
-    fn one_of_two_nodes_is_left_out_and_the_other_keeps_their_mesh() {
-        let mut scene = SceneBuilder::new().block(Vec3::ZERO, Vec3::ONE).build();
-        let far = DMat4::from_translation(DVec3::X * 5.0);
-        scene.nodes.push(crate::scene::Node { name: Some("second".into()), ..scene.nodes[0].clone() });
-        scene.instances.push(crate::scene::Instance { node: 1, bake_from_object: far, ..scene.instances[0] });
-        leave_out(&mut scene, &["second".into()]).unwrap();
-        assert_eq!([0, 1].map(|instance| scene.material(instance).alpha), [Alpha::Opaque, Alpha::Invisible]);
+    fn some_nodes_of_a_mesh_are_left_out_and_the_others_keep_it() {
+        let places = [0.0, 5.0, 10.0].map(|x| DMat4::from_translation(DVec3::X * x));
+        let (positions, indices) = (vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![0, 1, 2]);
+        let mesh = Mesh { positions, indices, ..Mesh::default() };
+        let mut scene = SceneBuilder::new().mesh_of(mesh, opaque(), &places).build();
+        scene.nodes[1].name = Some("shell_a".into());
+        scene.nodes[2].name = Some("shell_b".into());
+        let materials = scene.materials.len();
+        leave_out(&mut scene, &["shell_*".into()]).unwrap();
+        let alphas = [0, 1, 2].map(|instance| scene.material(instance).alpha);
+        assert_eq!(alphas, [Alpha::Opaque, Alpha::Invisible, Alpha::Invisible]);
+        assert_eq!(scene.instances.iter().map(|i| i.mesh).collect::<Vec<_>>(), [0, 1, 1]);
         assert_eq!(scene.meshes[0].positions, scene.meshes[1].positions);
         leave_out(&mut scene, &["node:0".into()]).unwrap();
         assert_eq!(scene.material(0).alpha, Alpha::Invisible);
-        assert_eq!((scene.meshes.len(), scene.instances[0].mesh), (2, 0));
+        assert_eq!((scene.meshes.len(), scene.materials.len()), (2, materials + 2));
     }
 
     #[test]

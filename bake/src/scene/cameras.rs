@@ -1,7 +1,7 @@
 //! Cameras, and the directional light that serves as the sun if no place is given.
 
 use super::{
-    SceneCamera,
+    Node, SceneCamera,
     document::{self, Document, place},
     limits::WarningLog,
     nodes::NodeTree,
@@ -13,9 +13,8 @@ use serde_json::Value;
 /// need it.
 pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<SceneCamera> {
     let mut cameras = Vec::new();
-    for (node, (placed, &index)) in tree.nodes.iter().zip(&tree.file_index).enumerate() {
-        let of_file = tree.file.get(index).filter(|_| tree.is_copy.get(node) == Some(&false));
-        let Some(camera) = of_file.and_then(|file| file.camera) else { continue };
+    for (node, placed) in tree.nodes.iter().enumerate().filter(|(_, placed)| !tree.is_copy(placed)) {
+        let Some(camera) = tree.file_node(placed).and_then(|file| file.camera) else { continue };
         let place = place::<document::JsonCamera>(camera);
         let (camera, bake_from_camera) = match doc.get::<document::JsonCamera>(camera) {
             Ok(camera) => (camera, rigid(&placed.world_from_node, centre_m)),
@@ -47,13 +46,12 @@ fn rigid(world_from_node: &DMat4, centre_m: DVec3) -> DMat4 {
 /// Towards the first directional light of `KHR_lights_punctual` in node order. A light shines along its node's -Z.
 pub(super) fn sun_direction(doc: &Document, tree: &NodeTree) -> Option<DVec3> {
     let lights = doc.root.get("extensions")?.get("KHR_lights_punctual")?.get("lights")?;
-    let is_directional = |index: usize| {
-        let light =
-            lights
-                .get(tree.file.get(index)?.extensions.as_ref()?.get("KHR_lights_punctual")?.get("light")?.as_u64()?
-                    as usize);
-        (light?.get("type").and_then(Value::as_str) == Some("directional")).then_some(())
+    let light_of = |node: &Node| {
+        let extensions = tree.file_node(node)?.extensions.as_ref()?;
+        lights.get(extensions.get("KHR_lights_punctual")?.get("light")?.as_u64()? as usize)
     };
-    let lit = tree.file_index.iter().position(|&index| is_directional(index).is_some())?;
-    tree.nodes.get(lit)?.world_from_node.z_axis.truncate().try_normalize()
+    let is_directional = |node: &&Node| {
+        light_of(node).and_then(|light| light.get("type")).and_then(Value::as_str) == Some("directional")
+    };
+    tree.nodes.iter().find(is_directional)?.world_from_node.z_axis.truncate().try_normalize()
 }

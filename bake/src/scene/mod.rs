@@ -53,6 +53,7 @@ pub use limits::{LoadLimits, SceneWarning};
 pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
 pub use names::{Selection, names};
+pub(crate) use names::{each_once, first_of};
 pub use resources::sha256;
 pub use shading::ShadingNormals;
 

@@ -4,6 +4,8 @@
 //! all nodes below it. What has no name of its own has an index in its file: `material:3`, `node:12`, `mesh:0`.
 
 use super::Scene;
+use std::borrow::Borrow;
+use std::collections::BTreeSet;
 
 /// Parts of a scene that a text names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,11 +57,22 @@ pub fn names(scene: &Scene) -> [Vec<&str>; 3] {
     let materials = scene.materials.iter().filter_map(|m| m.name.as_deref());
     let nodes = scene.instances.iter().filter_map(|i| scene.nodes[i.node].name.as_deref());
     let meshes = scene.meshes.iter().filter_map(|m| m.name.as_deref());
-    [materials.collect(), nodes.collect(), meshes.collect()].map(|mut all: Vec<&str>| {
-        let mut seen = std::collections::BTreeSet::new();
-        all.retain(|name| seen.insert(*name));
-        all
-    })
+    [materials.collect(), nodes.collect(), meshes.collect()].map(each_once)
+}
+
+/// The first of equal entries.
+pub(crate) fn each_once<T: Clone + Ord>(mut all: Vec<T>) -> Vec<T> {
+    let mut seen = BTreeSet::new();
+    all.retain(|one| seen.insert(one.clone()));
+    all
+}
+
+/// The first so many of a list, and how many more there are: `a, b and 7 more`.
+pub(crate) fn first_of<S: Borrow<str>>(list: &[S], most: usize) -> String {
+    match list.get(..most) {
+        Some(first) if list.len() > most => format!("{} and {} more", first.join(", "), list.len() - most),
+        _ => list.join(", "),
+    }
 }
 
 /// Whether a name fits a pattern, in which `*` stands for any text. A name that holds a `*` fits itself.
@@ -84,6 +97,16 @@ mod tests {
     use crate::scene::Material;
     use crate::testing::{SceneBuilder, block, opaque};
     use glam::Vec3;
+
+    #[test]
+    fn long_lists_are_cut_and_counted() {
+        let list = ["a", "b", "c"];
+        assert_eq!(
+            [0, 2, 3, 4].map(|most| first_of(&list, most)),
+            [" and 3 more", "a, b and 1 more", "a, b, c", "a, b, c"]
+        );
+        assert_eq!(each_once(vec!["b", "a", "b", "a"]), ["b", "a"]);
+    }
 
     #[test]
     fn a_star_stands_for_any_text() {

@@ -17,12 +17,8 @@ use glam::{DMat4, DQuat, DVec3, DVec4};
 #[derive(Default)]
 pub(super) struct NodeTree {
     pub nodes: Vec<Node>,
-    /// For each node, its index in the file; for a copy of a mesh, that of its parent.
-    pub file_index: Vec<usize>,
     /// For each node, the mesh of the file that it draws.
     pub mesh: Vec<Option<usize>>,
-    /// For each node, whether it is a copy of a mesh (see `instancing.rs`) and no node of the file.
-    pub is_copy: Vec<bool>,
     /// All nodes of the file.
     pub file: Vec<document::JsonNode>,
 }
@@ -94,7 +90,7 @@ fn walk(
                 continue;
             }
         };
-        let above = parent.and_then(|node| tree.file_index.get(node)).copied();
+        let above = parent.and_then(|node| tree.nodes.get(node)).map(|node| node.gltf);
         match marks.get_mut(index) {
             None => return Err(missing(&tree, index, above)),
             Some(Visit::Open) => return Err(LoadError::NodeCycle { node: index, parent: above.unwrap_or(index) }),
@@ -143,16 +139,12 @@ impl NodeTree {
         let mesh = node.mesh;
         let added = self.nodes.len();
         let named = Node { name: node.name.clone(), gltf: index, parent, parent_from_node, world_from_node };
-        self.push(named, index, mesh.filter(|_| copies.is_none()), false);
+        self.push(named, mesh.filter(|_| copies.is_none()));
         for parent_from_node in copies.into_iter().flatten() {
             let world_from_node = world_from_node * parent_from_node;
             if is_invertible(&world_from_node) {
-                self.push(
-                    Node { name: None, gltf: index, parent: Some(added), parent_from_node, world_from_node },
-                    index,
-                    mesh,
-                    true,
-                );
+                let copy = Node { name: None, gltf: index, parent: Some(added), parent_from_node, world_from_node };
+                self.push(copy, mesh);
             } else {
                 log.warn("a copy of its mesh has a singular matrix; left out", place::<document::JsonNode>(index));
             }
@@ -160,11 +152,19 @@ impl NodeTree {
         Ok(Some(added))
     }
 
-    fn push(&mut self, node: Node, file_index: usize, mesh: Option<usize>, is_copy: bool) {
+    fn push(&mut self, node: Node, mesh: Option<usize>) {
         self.nodes.push(node);
-        self.file_index.push(file_index);
         self.mesh.push(mesh);
-        self.is_copy.push(is_copy);
+    }
+
+    /// The node of the file that a node stands for; of a copy, the node whose mesh it draws.
+    pub fn file_node(&self, node: &Node) -> Option<&document::JsonNode> {
+        self.file.get(node.gltf)
+    }
+
+    /// Whether a node is a copy of a mesh (see `instancing.rs`), and no node of the file.
+    pub fn is_copy(&self, node: &Node) -> bool {
+        node.parent.and_then(|parent| self.nodes.get(parent)).is_some_and(|parent| parent.gltf == node.gltf)
     }
 
     /// World matrices of all nodes of the file, drawn or not, since a skin's joints may be anywhere.

@@ -46,8 +46,7 @@ impl Pose {
         node: usize,
         mesh: &document::JsonMesh,
     ) -> Result<Self, LoadError> {
-        let Some((file, drawn)) = tree.file_index.get(node).and_then(|&i| tree.file.get(i)).zip(tree.nodes.get(node))
-        else {
+        let Some((file, drawn)) = tree.nodes.get(node).and_then(|drawn| Some((tree.file_node(drawn)?, drawn))) else {
             return Ok(Self::default());
         };
         let weights = file.weights.clone().or_else(|| mesh.weights.clone()).unwrap_or_default();

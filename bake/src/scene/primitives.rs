@@ -39,15 +39,14 @@ pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Res
     let mut drawn = DrawnMeshes::default();
     let mut known: HashMap<PosedMesh, Vec<usize>> = HashMap::new();
     let mut skeletons = Skeletons::default();
-    for (node, &file_index) in tree.file_index.iter().enumerate() {
-        let Some(file) = tree.file.get(file_index) else { continue };
-        let Some(mesh_index) = tree.mesh.get(node).copied().flatten() else { continue };
+    for (node, (placed, &mesh)) in tree.nodes.iter().zip(&tree.mesh).enumerate() {
+        let (Some(file), Some(mesh_index)) = (tree.file_node(placed), mesh) else { continue };
         let is_posed = file.skin.is_some() || file.weights.is_some();
         let meshes = match known.entry((mesh_index, is_posed.then_some(node))) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
                 if file.skin.is_some() {
-                    log.warn("its skin was baked in its rest pose", label(file, file_index));
+                    log.warn("its skin was baked in its rest pose", label(file, placed.gltf));
                 }
                 let mesh: document::JsonMesh = reader.doc.get(mesh_index)?;
                 let pose = match is_posed {

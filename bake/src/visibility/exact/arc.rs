@@ -10,8 +10,8 @@
 //! `(-C A - W B, W A - C B)`, both times `R^2`. If `R <= |C|` the sign of C decides for all h.
 //!
 //! Hour angles are held as *diamond angles*: of a vector (x, y), `y / (|x| + |y|)` if x is not negative, else
-//! `±2 - y / (|x| + |y|)`. It grows with the angle from -2 to 2 and costs a division, no trigonometry. Only the ends of
-//! final answers are turned into times.
+//! `±2 - y / (|x| + |y|)`. It grows with the angle from -2 to 2 and costs a division, no trigonometry. Only the ends
+//! of final answers are turned into times.
 
 use crate::sun::{SunArc, SunPath};
 use glam::{DMat3, DVec3};
