@@ -30,8 +30,8 @@ fn turn_into_air(material: &mut Material) {
     (material.alpha, material.base_color.w) = (Alpha::Invisible, 0.0);
 }
 
-/// Gives instances a material that is air: one copy of each of their materials. Those of a mesh that others draw too get
-/// one copy of that mesh.
+/// Gives instances a material that is air: one copy of each of their materials. Where others draw the same mesh, they
+/// get one copy of that mesh.
 fn leave_out_instances(scene: &mut Scene, instances: &[usize]) {
     let mut draws_of_mesh = vec![0; scene.meshes.len()];
     scene.instances.iter().for_each(|instance| draws_of_mesh[instance.mesh] += 1);
