@@ -264,7 +264,7 @@ fn quarter(mesh: &mut Mesh) {
             mesh.positions.extend(triangle);
         }
     }
-    mesh.texcoords = [None, None];
+    mesh.texcoords = Vec::new();
     (mesh.normals, mesh.colors) = Default::default();
 }
 

@@ -66,10 +66,10 @@ fn texel_of(bake: &Bake, scene: &Scene, geometry: &Geometry, hit: &Hit) -> Optio
     let surface = geometry.surface(hit.triangle as usize);
     let instance = &scene.instances[surface.instance];
     let mesh = &scene.meshes[instance.mesh];
-    let place = (instance.node, mesh.gltf.1);
+    let place = (scene.nodes[instance.node].gltf, mesh.gltf.1);
     let entry = bake.manifest.instances.iter().find(|entry| (entry.node, entry.primitive) == place)?;
     let page = entry.atlas? as usize;
-    let uvs = mesh.texcoords[entry.uv_set as usize].as_ref()?;
+    let uvs = mesh.texcoord_set(entry.uv_set as usize)?;
     let [a, b, c] = [0, 1, 2].map(|k| uvs[mesh.indices[3 * surface.mesh_triangle + k] as usize]);
     let [v, w] = hit.barycentric.map(|weight| weight as f32);
     let page_uv = (a + (b - a) * v + (c - a) * w) * Vec2::from(entry.uv_scale) + Vec2::from(entry.uv_offset);

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use sunbake::atlas;
 use sunbake::disk::read::{BakedSet, read};
 use sunbake::maps::{LaneMaps, PageMaps, soft_visibility};
-use sunbake::scene::{Geometry, LoadLimits, load};
+use sunbake::scene::{Geometry, LoadLimits};
 use sunbake::sun::SunPath;
 
 /// Moments of the day that are printed.
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// For each page, the texels that lie on a surface. The others hold gutters.
 fn covered_texels(set: &BakedSet) -> Result<Vec<Vec<usize>>, Box<dyn Error>> {
-    let scene = load(&set.scene_file(), &LoadLimits::default())?;
+    let scene = set.scene(&LoadLimits::default())?;
     let (atlas, geometry) = (set.manifest.atlas(&scene), Geometry::new(&scene));
     let texels = |page: usize| {
         let samples = atlas::sample_page(&scene, &geometry, &atlas, page as u32).samples;

@@ -34,6 +34,7 @@ impl SceneBuilder {
                 half_extent_m: DVec3::ZERO,
                 dropped: Dropped::default(),
                 warnings: Vec::new(),
+                file: None,
             },
         }
     }
@@ -84,8 +85,7 @@ impl SceneBuilder {
     /// Adds an image and gives back its index with the builder.
     pub fn image(mut self, width: u32, height: u32, rgba: Vec<[u8; 4]>) -> (Self, usize) {
         let name = "made by code".into();
-        let encoded = png_of(width, height, &rgba);
-        self.scene.images.push(Image { name, width, height, rgba, encoded, mime_type: "image/png" });
+        self.scene.images.push(Image { name, width, height, rgba });
         let index = self.scene.images.len() - 1;
         (self, index)
     }
@@ -109,15 +109,6 @@ impl SceneBuilder {
         }
         self.scene
     }
-}
-
-fn png_of(width: u32, height: u32, rgba: &[[u8; 4]]) -> Vec<u8> {
-    let mut encoded = Vec::new();
-    let mut encoder = png::Encoder::new(&mut encoded, width, height);
-    encoder.set_color(png::ColorType::Rgba);
-    let written = encoder.write_header().and_then(|mut w| w.write_image_data(rgba.as_flattened()));
-    written.expect("as many texels as the size says");
-    encoded
 }
 
 /// An opaque, single-sided, mid-grey material.

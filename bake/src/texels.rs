@@ -4,7 +4,7 @@
 use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
-use crate::scene::{self, Geometry, LoadError, LoadLimits, Scene};
+use crate::scene::{Geometry, LoadError, LoadLimits, Scene};
 use crate::trace::Tracer;
 use glam::DVec3;
 use serde::Serialize;
@@ -65,7 +65,7 @@ pub struct TexelLane {
 /// Picks `count` random covered texels (all, if there are fewer), in page and row order. The same seed picks the same
 /// texels.
 pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
-    let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
+    let scene = set.scene(&LoadLimits::default())?;
     let atlas = set.manifest.atlas(&scene);
     let geometry = Geometry::new(&scene);
     let tracer = Tracer::new(&scene, &geometry);

@@ -20,6 +20,9 @@ pub enum Warning {
     /// Something in the scene was not read as the file has it.
     #[error("{0}")]
     Scene(SceneWarning),
+    /// `scene.glb` lacks something of the scene's own file.
+    #[error("scene.glb does not keep {0}")]
+    NotKept(String),
     /// The sun stays below the horizon all day.
     #[error(
         "the sun does not rise at latitude {latitude_deg} on {date}: its centre stays at least {:.1} degrees below the \
@@ -157,7 +160,7 @@ impl Warning {
     /// What to do about it, if a setting can help.
     pub fn remedy(&self) -> Option<Remedy> {
         match self {
-            Self::Scene(_) | Self::PaddingReduced { .. } | Self::Unwrapped { .. } => None,
+            Self::Scene(_) | Self::NotKept(_) | Self::PaddingReduced { .. } | Self::Unwrapped { .. } => None,
             Self::NoSunrise { .. } => Some(Remedy::Change(Setting::Date)),
             Self::PageEnlarged { used_texels, .. } => Some(Remedy::any([
                 Remedy::Set(Setting::PageSize, used_texels.to_string()),

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     fn image(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Image {
-        Image { name: String::new(), width, height, rgba, encoded: Vec::new(), mime_type: "image/png" }
+        Image { name: String::new(), width, height, rgba }
     }
 
     #[test]

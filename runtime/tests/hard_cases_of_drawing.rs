@@ -160,7 +160,7 @@ fn leaf() -> Scene {
     let triangles = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0);
     let positions: Vec<Vec3> = triangles.iter().flatten().copied().collect();
     let uvs = positions.iter().map(|p| Vec2::new(p.x + 1.0, p.z + 1.0) / 2.0).collect();
-    let card = Mesh { indices: (0..6).collect(), positions, texcoords: [Some(uvs), None], ..Mesh::default() };
+    let card = Mesh { indices: (0..6).collect(), positions, texcoords: vec![Some(uvs)], ..Mesh::default() };
     builder
         .soup(&floor(Vec2::splat(-2.0), Vec2::splat(2.0), 0.0))
         .mesh_of(card, alpha_masked(texture), &[DMat4::IDENTITY])

@@ -109,7 +109,7 @@ fn textures_alpha_masks_colours_and_second_sides_cost_only_the_scenes_that_have_
         let positions: Vec<Vec3> = cube().iter().flatten().copied().collect();
         let uvs = positions.iter().map(|p| Vec2::new(p.x, p.y + p.z)).collect();
         let colors = has_colors.then(|| vec![Vec4::ONE; positions.len()]);
-        Mesh { indices: (0..36).collect(), positions, texcoords: [Some(uvs), None], colors, ..Mesh::default() }
+        Mesh { indices: (0..36).collect(), positions, texcoords: vec![Some(uvs)], colors, ..Mesh::default() }
     };
     let textured = Material { base_color_texture: Some(texture), ..opaque() };
     let leaf = Material { alpha: Alpha::Mask { cutoff: 0.5 }, is_double_sided: true, ..textured.clone() };

@@ -61,7 +61,7 @@ fn dressed(triangles: &[[Vec3; 3]]) -> Mesh {
     let uvs = positions.iter().map(|p| Vec2::new(p.x * 0.2 + p.y * 0.3, p.z * 0.2 - p.y * 0.1)).collect();
     let colors = positions.iter().map(|p| Vec4::new(0.5 + 0.05 * p.x, 0.8, 0.6 - 0.05 * p.z, 1.0)).collect();
     let indices = (0..positions.len() as u32).collect();
-    Mesh { positions, texcoords: [Some(uvs), None], colors: Some(colors), indices, ..Mesh::default() }
+    Mesh { positions, texcoords: vec![Some(uvs)], colors: Some(colors), indices, ..Mesh::default() }
 }
 
 fn everything(wrap: Wrap) -> Scene {

@@ -7,6 +7,7 @@ pub mod browser;
 pub mod compare_command;
 pub mod compared;
 pub mod engines;
+pub mod gltf_diff;
 pub mod needs;
 mod oracle;
 pub mod paths;

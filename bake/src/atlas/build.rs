@@ -5,7 +5,7 @@ use super::error::AtlasError;
 use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::search::{MOST_PAGES, find_plan};
 use super::unwrap::{self, Charts};
-use super::{Atlas, AtlasSettings, Density, Layout, LayoutOrigin, Placement};
+use super::{Atlas, AtlasSettings, Density, FILE_SET, Layout, LayoutOrigin, Placement};
 use super::{existing, measure, shared};
 use crate::scene::{Alpha, Scene};
 use rayon::prelude::*;
@@ -130,7 +130,7 @@ fn assemble(scene: &Scene, items: &[AtlasMesh], plan: &AtlasPlan) -> Atlas {
     for (item, uvs) in items.iter().zip(plan.layout_uvs(items)) {
         let mesh = scene.instances[item.instances[0].0].mesh;
         layouts[mesh] = Some(match &item.form {
-            MeshLayout::FileLayout(_) => Layout::of_file(&scene.meshes[mesh]),
+            MeshLayout::FileLayout(_) => Layout::of_file(&scene.meshes[mesh], FILE_SET),
             MeshLayout::Charts(charts) => Layout {
                 origin: LayoutOrigin::Unwrapped,
                 vertices: charts.vertices.clone(),

@@ -15,10 +15,10 @@
 //! of its rectangle, because some exporters leave coordinates in `TEXCOORD_1` that do not overlap but spread small
 //! specks over the whole square, which would waste the page.
 
-use super::PageSize;
 use super::arrange::FileLayout;
 use super::coverage;
 use super::overlap::{Triangle, area2, overlap_more_than};
+use super::{FILE_SET, PageSize};
 use crate::scene::{Mesh, Scene};
 use glam::{DVec2, Vec2};
 use std::collections::{HashMap, HashSet};
@@ -57,7 +57,7 @@ pub(super) enum LayoutProblem {
 
 /// The mesh's `TEXCOORD_1`, if it can be used.
 pub(super) fn check_layout(mesh: &Mesh) -> Result<FileLayout, LayoutProblem> {
-    let uvs = mesh.texcoords[1].as_deref().ok_or(LayoutProblem::Missing)?;
+    let uvs = mesh.texcoord_set(FILE_SET).ok_or(LayoutProblem::Missing)?;
     let used = mesh.indices.iter().map(|&i| uvs[i as usize]);
     if !used.clone().all(|uv| uv.is_finite()) {
         return Err(LayoutProblem::NotFinite);
@@ -87,7 +87,7 @@ pub(super) fn share_one_square(scene: &Scene, meshes: &[usize]) -> bool {
     let mut all = Vec::new();
     for &mesh in meshes {
         let mesh = &scene.meshes[mesh];
-        let Some(uvs) = mesh.texcoords[1].as_deref() else { return false };
+        let Some(uvs) = mesh.texcoord_set(FILE_SET) else { return false };
         all.extend(without_copies(mesh, &triangles(mesh, uvs)));
     }
     !overlap_more_than(&all, OVERLAP_SHARE)
@@ -139,7 +139,7 @@ pub(super) fn crowded_share(meshes: &[&Mesh], size: PageSize, texel_from_uv: imp
     let mut owners = vec![UNOWNED; size.texel_count()];
     let (mut touched, mut crowded, mut base) = (0u32, 0u32, 0u32);
     for mesh in meshes {
-        let Some(uvs) = mesh.texcoords[1].as_deref() else { continue };
+        let Some(uvs) = mesh.texcoord_set(FILE_SET) else { continue };
         let island = islands(mesh, uvs);
         for (triangle, corners) in mesh.indices.chunks_exact(3).zip(triangles(mesh, uvs)) {
             let corners = corners.map(&texel_from_uv);

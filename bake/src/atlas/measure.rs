@@ -2,7 +2,7 @@
 
 use super::arrange::{AtlasMesh, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
-use super::{Atlas, AtlasSettings, Density};
+use super::{Atlas, AtlasSettings, Density, FILE_SET};
 use crate::scene::{Scene, each_once};
 use crate::warning::Warning;
 use rayon::prelude::*;
@@ -73,7 +73,7 @@ pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -
 pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<Warning> {
     let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
     let is_refused =
-        |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoords[1].is_some();
+        |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoord_set(FILE_SET).is_some();
     let meshes = each_once(items.iter().filter(is_refused).map(|item| mesh(item).label()).collect());
     (settings.keeps_existing && !meshes.is_empty()).then_some(Warning::Unwrapped { meshes })
 }

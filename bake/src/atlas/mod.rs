@@ -138,6 +138,9 @@ pub struct Layout {
     pub indices: Vec<u32>,
 }
 
+/// The set of a file's own texture coordinates that may serve as a layout.
+const FILE_SET: usize = 1;
+
 /// Whose coordinates a layout holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LayoutOrigin {
@@ -148,10 +151,10 @@ pub enum LayoutOrigin {
 }
 
 impl Layout {
-    /// The mesh with the coordinates that its file has in `TEXCOORD_1`; zero where it has none.
-    pub fn of_file(mesh: &Mesh) -> Self {
+    /// The mesh with the coordinates that its file has in `TEXCOORD_n`, n being `set`; zero where it has none.
+    pub fn of_file(mesh: &Mesh, set: usize) -> Self {
         let layout = Self { origin: LayoutOrigin::File, ..Self::of_mesh(mesh) };
-        Self { uvs: mesh.texcoords[1].clone().unwrap_or_else(|| layout.uvs.clone()), ..layout }
+        Self { uvs: mesh.texcoord_set(set).map_or_else(|| layout.uvs.clone(), <[Vec2]>::to_vec), ..layout }
     }
 
     /// The mesh's own vertices with all coordinates zero: for a mesh without texels.

@@ -1,7 +1,7 @@
 //! A file whose meshes all share one light map: their `TEXCOORD_1` becomes the only page, unchanged.
 
 use super::existing::{self, CROWDED_SHARE};
-use super::{Atlas, AtlasSettings, Density, Layout, PageSize, Placement};
+use super::{Atlas, AtlasSettings, Density, FILE_SET, Layout, PageSize, Placement};
 use crate::scene::Scene;
 use crate::warning::Warning;
 use glam::Vec2;
@@ -37,7 +37,11 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
     drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole_page);
     let layout = |m: usize| {
-        if drawn[m].is_empty() { Layout::of_mesh(&scene.meshes[m]) } else { Layout::of_file(&scene.meshes[m]) }
+        if drawn[m].is_empty() {
+            Layout::of_mesh(&scene.meshes[m])
+        } else {
+            Layout::of_file(&scene.meshes[m], FILE_SET)
+        }
     };
     let texels_per_metre = f64::from(side) * (uv2 / metres2).sqrt();
     let layouts = (0..scene.meshes.len()).map(layout).collect();

@@ -35,13 +35,15 @@ pub struct Bake {
 }
 
 impl Bake {
-    /// The scene as [`crate::scene::load`] reads it from a written set, with the bake's texture coordinates.
+    /// The scene as [`crate::disk::read::BakedSet::scene`] reads it from a written set.
     ///
     /// # Errors
     ///
     /// Where the scene needs more memory than `limits` allow.
     pub fn scene(&self, limits: &LoadLimits) -> Result<Scene, LoadError> {
-        scene::parse(Path::new(&self.manifest.scene.file), &self.scene_glb, limits)
+        let mut scene = scene::parse(Path::new(&self.manifest.scene.file), &self.scene_glb, limits)?;
+        self.manifest.leave_out(&mut scene);
+        Ok(scene)
     }
 
     /// Writes the set into the folder `target`; `force` allows an older set there to be replaced. Gives the manifest as

@@ -4,7 +4,7 @@ use super::prepare::Prepared;
 use crate::atlas::Atlas;
 use crate::disk::manifest::{self, ArcEntry, ErrorEntry, InstanceEntry, LampEntry, Manifest, PathEntry, Stats};
 use crate::disk::write::SCENE_FILE;
-use crate::glb::WrittenScene;
+use crate::glb::{WrittenPlace, WrittenScene};
 use crate::lamp::{LampKey, LampPath};
 use crate::scene::{Alpha, Scene};
 use crate::settings::BakeSettings;
@@ -78,21 +78,21 @@ fn arc_entry(arc: &sun::SunArc) -> ArcEntry {
 }
 
 pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenScene) -> Vec<InstanceEntry> {
-    let entry = |(index, &(node, primitive)): (usize, &(usize, usize))| {
+    let entry = |(index, &WrittenPlace { node, primitive, uv_set }): (usize, &WrittenPlace)| {
         let placement = &atlas.placements[index];
         let material = scene.material(index);
         InstanceEntry {
             node,
             primitive,
             atlas: (material.alpha != Alpha::Invisible).then_some(placement.page),
-            uv_set: 1,
+            uv_set,
             // Coordinates that are the page's own already are not moved again.
             uv_scale: if written.has_page_uvs { [1.0; 2] } else { placement.scale.to_array() },
             uv_offset: if written.has_page_uvs { [0.0; 2] } else { placement.offset.to_array() },
             double_sided: material.is_double_sided,
         }
     };
-    written.primitives_of_instances.iter().enumerate().map(entry).collect()
+    written.places.iter().enumerate().map(entry).collect()
 }
 
 /// Where slots ran out: of the sun, of the lamp.

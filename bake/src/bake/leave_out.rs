@@ -2,9 +2,8 @@
 //! nor cast a shadow.
 
 use super::error::BakeError;
-use crate::scene::{Alpha, Material, Mesh, Scene, Selection, first_of, names};
+use crate::scene::{Alpha, Scene, Selection, first_of, names};
 use crate::warning::Warning;
-use std::collections::BTreeMap;
 
 /// Share of texels that never see the sun above which a user is asked whether a shell shades the scene.
 const SUSPICIOUS_SHARE: f64 = 0.75;
@@ -19,43 +18,10 @@ pub(super) fn leave_out(scene: &mut Scene, texts: &[String]) -> Result<(), BakeE
         if selection.is_empty() {
             return Err(BakeError::NothingNamed { name: text.clone(), known: known(scene) });
         }
-        selection.materials.iter().for_each(|&index| turn_into_air(&mut scene.materials[index]));
-        leave_out_instances(scene, &selection.instances);
+        selection.materials.iter().for_each(|&index| scene.materials[index].alpha = Alpha::Invisible);
+        scene.turn_into_air(&selection.instances);
     }
     Ok(())
-}
-
-/// No alpha either, so that the set's own scene says the same to whoever reads it.
-fn turn_into_air(material: &mut Material) {
-    (material.alpha, material.base_color.w) = (Alpha::Invisible, 0.0);
-}
-
-/// Gives instances a material that is air: one copy of each of their materials. Where others draw the same mesh, they
-/// get one copy of that mesh.
-fn leave_out_instances(scene: &mut Scene, instances: &[usize]) {
-    let mut draws_of_mesh = vec![0; scene.meshes.len()];
-    scene.instances.iter().for_each(|instance| draws_of_mesh[instance.mesh] += 1);
-    let mut by_mesh: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    instances.iter().for_each(|&one| by_mesh.entry(scene.instances[one].mesh).or_default().push(one));
-    let mut air_of_material = BTreeMap::new();
-    for (mesh, instances) in by_mesh {
-        let material = scene.meshes[mesh].material;
-        if scene.materials[material].alpha == Alpha::Invisible {
-            continue;
-        }
-        let air = *air_of_material.entry(material).or_insert_with(|| {
-            scene.materials.push(scene.materials[material].clone());
-            scene.materials.last_mut().into_iter().for_each(turn_into_air);
-            scene.materials.len() - 1
-        });
-        if instances.len() < draws_of_mesh[mesh] {
-            let copy = scene.meshes.len();
-            scene.meshes.push(Mesh { material: air, ..scene.meshes[mesh].clone() });
-            instances.into_iter().for_each(|one| scene.instances[one].mesh = copy);
-        } else {
-            scene.meshes[mesh].material = air;
-        }
-    }
 }
 
 /// What a scene has to name, for a message.
@@ -77,6 +43,7 @@ pub(super) fn darkness_warning(dark_texels: u64, texels: u64) -> Option<Warning>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Material, Mesh};
     use crate::testing::{SceneBuilder, block, opaque};
     use glam::{DMat4, DVec3, Vec3};
 

@@ -149,6 +149,7 @@ fn bake_prepared(
         ..manifest
     };
     check_cancelled(progress)?;
+    warnings.extend(written.not_kept.iter().cloned().map(Warning::NotKept));
     warnings.extend(atlas.warnings.iter().cloned());
     warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
     warnings.extend(loss_warnings(&manifest, settings));

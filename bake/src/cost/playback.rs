@@ -7,7 +7,7 @@ use super::truth::{GroundTruth, SurfaceSample};
 use crate::atlas::{Atlas, Footprint};
 use crate::disk::read::BakedSet;
 use crate::maps::{Bits, LaneMaps, PageMaps, decode_share, soft_visibility};
-use crate::scene::{self, Geometry, LoadLimits, Scene};
+use crate::scene::{Geometry, LoadLimits, Scene};
 use crate::sun::SunPath;
 use rayon::prelude::*;
 
@@ -27,7 +27,7 @@ pub(super) type WeightedTexels = [(usize, f32); 4];
 
 /// Compares a set with the truth; `of` is the scene that the points lie on.
 pub(super) fn errors(set: &BakedSet, truth: &GroundTruth, of: &Scene) -> Result<PlaybackErrors, CostError> {
-    let scene = scene::load(&set.scene_file(), &LoadLimits::default())?;
+    let scene = set.scene(&LoadLimits::default())?;
     let geometry = Geometry::new(&scene);
     let atlas = set.manifest.atlas(&scene);
     check(truth, of, &scene, &geometry)?;

@@ -1,4 +1,4 @@
-//! Restores the atlas of a baked set: placements from its manifest, texture coordinates from its scene.
+//! A baked set's scene and atlas: placements from its manifest, texture coordinates from its scene.
 
 use super::manifest::{InstanceEntry, Manifest};
 use crate::atlas::{Atlas, Layout, PageSize, Placement};
@@ -7,18 +7,34 @@ use glam::Vec2;
 use std::collections::HashMap;
 
 impl Manifest {
-    /// The atlas for `scene`, which was loaded from the set that this manifest describes.
-    pub fn atlas(&self, scene: &Scene) -> Atlas {
-        let keyed = |entry: &InstanceEntry| ((entry.node, entry.primitive), placement(entry));
-        let placements: HashMap<_, _> = self.instances.iter().map(keyed).collect();
+    /// The entries of a scene's instances. `scene` was loaded from the set that this manifest describes.
+    pub fn entries(&self, scene: &Scene) -> Vec<Option<&InstanceEntry>> {
+        let entries: HashMap<_, _> = self.instances.iter().map(|e| ((e.node, e.primitive), e)).collect();
         let find = |instance: &Instance| {
-            let primitive = scene.meshes[instance.mesh].gltf.1;
-            placements.get(&(instance.node, primitive)).copied().unwrap_or(Placement::EMPTY)
+            let key = (scene.nodes[instance.node].gltf, scene.meshes[instance.mesh].gltf.1);
+            entries.get(&key).copied()
         };
+        scene.instances.iter().map(find).collect()
+    }
+
+    /// Takes away from the set's scene what the bake left out: what has an entry and no atlas page.
+    pub fn leave_out(&self, scene: &mut Scene) {
+        let is_left_out = |(index, entry): (usize, &Option<&InstanceEntry>)| (*entry)?.atlas.is_none().then_some(index);
+        let instances: Vec<usize> = self.entries(scene).iter().enumerate().filter_map(is_left_out).collect();
+        scene.turn_into_air(&instances);
+    }
+
+    /// The atlas for the set's scene.
+    pub fn atlas(&self, scene: &Scene) -> Atlas {
+        let entries = self.entries(scene);
+        let mut uv_sets = vec![1; scene.meshes.len()];
+        for (instance, entry) in scene.instances.iter().zip(&entries) {
+            uv_sets[instance.mesh] = entry.map_or(1, |entry| entry.uv_set as usize);
+        }
         Atlas {
             pages: self.atlases.iter().map(|a| PageSize { width: a.width, height: a.height }).collect(),
-            layouts: scene.meshes.iter().map(Layout::of_file).collect(),
-            placements: scene.instances.iter().map(find).collect(),
+            layouts: scene.meshes.iter().zip(uv_sets).map(|(mesh, set)| Layout::of_file(mesh, set)).collect(),
+            placements: entries.iter().map(|entry| entry.map_or(Placement::EMPTY, placement)).collect(),
             texels_per_metre: self.scene.texels_per_metre,
             chart_count: self.stats.charts as usize,
             warnings: Vec::new(),

@@ -5,6 +5,7 @@ use super::manifest::{
 };
 use crate::lamp::{LampError, LampKey, LampPath};
 use crate::maps::{AmbientMaps, AmbientSide, Bits, Lane, LaneMaps, LayerMaps, PageMaps};
+use crate::scene::{self, LoadError, LoadLimits, Scene};
 use crate::sun::{Day, PathError, SunArc, SunPath};
 use glam::DVec3;
 use std::path::{Component, Path, PathBuf};
@@ -15,7 +16,7 @@ pub const MANIFEST_FILE: &str = "sunbake.json";
 const MAX_PAGE_TEXELS: u32 = 16_384;
 
 /// A baked set, read and checked: files exist, sizes agree, indices are in range. The scene itself is read with
-/// [`crate::scene::load`] from [`BakedSet::scene_file`].
+/// [`BakedSet::scene`].
 #[derive(Debug, Clone)]
 pub struct BakedSet {
     /// The folder that holds `sunbake.json`.
@@ -36,6 +37,17 @@ impl BakedSet {
     /// Path of `scene.glb`.
     pub fn scene_file(&self) -> PathBuf {
         self.folder.join(&self.manifest.scene.file)
+    }
+
+    /// The scene, without what the bake left out.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be loaded within `limits`.
+    pub fn scene(&self, limits: &LoadLimits) -> Result<Scene, LoadError> {
+        let mut scene = scene::load(&self.scene_file(), limits)?;
+        self.manifest.leave_out(&mut scene);
+        Ok(scene)
     }
 }
 

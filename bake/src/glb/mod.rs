@@ -1,38 +1,64 @@
-//! Writes `scene.glb`: the scene for any glTF viewer, with the bake's own texture coordinates.
+//! Writes `scene.glb`: the scene's own file with the bake's additions, for any glTF viewer.
 //!
-//! The file keeps everything of its source that sunbake reads: the hierarchy with names and full-precision matrices,
-//! meshes with unchanged vertices, base colours with their images' original bytes, cameras. It adds `TEXCOORD_1`, the
-//! layout of each mesh; vertices on chart borders are duplicated. `TEXCOORD_0` is the set that the base colour uses,
-//! since viewers expect sets to be numbered from 0 without gaps.
+//! The file stays what it was: every node, mesh, material, texture, extension, extra, light, camera and animation is
+//! still there, in its old order and under its old index. Added are
+//!
+//! * a set of texture coordinates for each baked primitive, in the first `TEXCOORD_n` that is free (from 1). Vertices
+//!   on the borders of charts are copied, with all their attributes and morph targets; copies come after the old
+//!   vertices ([`streams`]);
+//! * where ambient light was baked, occlusion textures, and copies of materials and meshes that need one of their own
+//!   ([`occlusion`], [`meshes`]);
+//! * nodes for the copies of `EXT_mesh_gpu_instancing`, which the bake tells apart ([`nodes`]).
+//!
+//! All buffers and pictures that could be read become one binary chunk ([`binary`]). What could not be kept is named in
+//! [`WrittenScene::not_kept`]. A scene made by code has no file; one is made of it first ([`made`]).
 //!
 //! The same scene gives the same bytes. Reading the file back gives the same nodes, instances and triangles in the same
 //! order.
 //!
 //! Based on: Khronos Group, *glTF 2.0 Specification*.
 
+mod additions;
 mod binary;
+mod made;
 mod materials;
 mod meshes;
 mod nodes;
 mod occlusion;
+mod pictures;
+mod references;
+mod streams;
 
 pub use occlusion::{Occlusion, OcclusionPage};
 
 use crate::{atlas::Layout, scene::Scene, settings::VertexAttribute};
+use additions::Additions;
 use binary::Binary;
-use materials::WrittenMaterials;
-use meshes::{Groups, PerInstance};
-use serde_json::{Map, Value, json};
+use meshes::FilePlaces;
+use serde_json::Value;
 
 /// A scene as a GLB file, and where its instances are in it.
 #[derive(Debug, Clone)]
 pub struct WrittenScene {
     /// Content of the file.
     pub bytes: Vec<u8>,
-    /// For each of [`Scene::instances`], its node and the index of its primitive in that node's mesh.
-    pub primitives_of_instances: Vec<(usize, usize)>,
-    /// Whether `TEXCOORD_1` holds page coordinates instead of layout coordinates.
+    /// For each of [`Scene::instances`], where it is in the file.
+    pub places: Vec<WrittenPlace>,
+    /// Whether baked coordinates are page coordinates instead of layout coordinates.
     pub has_page_uvs: bool,
+    /// What the scene's own file has and this one has not, one sentence each.
+    pub not_kept: Vec<String>,
+}
+
+/// Where an instance is in a written file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WrittenPlace {
+    /// Index of its node.
+    pub node: usize,
+    /// Index of its primitive in that node's mesh.
+    pub primitive: usize,
+    /// Which `TEXCOORD_n` holds its baked coordinates.
+    pub uv_set: u32,
 }
 
 /// The scene is too large for GLB's 32-bit lengths.
@@ -49,19 +75,7 @@ pub struct GlbTooLarge {
 ///
 /// If the file would have 4 GiB or more.
 pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>) -> Result<WrittenScene, GlbTooLarge> {
-    let mut binary = Binary::default();
-    let groups = Groups::new(scene, occlusion.is_some());
-    let mut materials = materials::write(scene, &mut binary);
-    let per_instance = match &occlusion {
-        None => PerInstance::Nothing,
-        Some(occlusion) => PerInstance::Occlusion(*occlusion, occlusion.add_to(scene, &mut materials, &mut binary)),
-    };
-    let bytes = finish(scene, layouts, &groups, &per_instance, materials, binary)?;
-    Ok(WrittenScene {
-        bytes,
-        primitives_of_instances: groups.primitives_of_instances,
-        has_page_uvs: occlusion.is_some(),
-    })
+    write(scene, &Additions::Coordinates { layouts, occlusion })
 }
 
 /// Writes a scene with ambient visibility at its vertices (for each instance, one number per vertex of its mesh, 0 to
@@ -70,45 +84,58 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
 /// # Errors
 ///
 /// If the file would have 4 GiB or more.
-pub fn write_vertices(scene: &Scene, attribute: VertexAttribute, open: &[Vec<f32>]) -> Result<Vec<u8>, GlbTooLarge> {
-    let mut binary = Binary::default();
-    let groups = Groups::new(scene, true);
-    let materials = materials::write(scene, &mut binary);
-    let layouts: Vec<Layout> = scene.meshes.iter().map(Layout::of_mesh).collect();
-    finish(scene, &layouts, &groups, &PerInstance::VertexVisibility(attribute, open), materials, binary)
-}
-
-fn finish(
+pub fn write_vertices(
     scene: &Scene,
-    layouts: &[Layout],
-    groups: &Groups,
-    per_instance: &PerInstance,
-    materials: WrittenMaterials,
-    mut binary: Binary,
+    attribute: VertexAttribute,
+    visibility: &[Vec<f32>],
 ) -> Result<Vec<u8>, GlbTooLarge> {
-    let meshes = meshes::write(scene, layouts, groups, per_instance, &mut binary);
-    let mut root = Map::new();
-    root.insert("asset".into(), json!({ "version": "2.0", "generator": GENERATOR }));
-    root.insert("scene".into(), json!(0));
-    root.insert("scenes".into(), json!([{ "nodes": nodes::roots(scene) }]));
-    let lists = [
-        ("nodes", nodes::write(scene, groups)),
-        ("cameras", nodes::cameras(scene)),
-        ("meshes", meshes),
-        ("materials", materials.materials),
-        ("textures", materials.textures),
-        ("samplers", materials.samplers),
-        ("images", materials.images),
-        ("extensionsUsed", materials.extensions),
-        ("accessors", binary.accessors),
-        ("bufferViews", binary.views),
-        ("buffers", vec![json!({ "byteLength": binary.bytes.len() })]),
-    ];
-    root.extend(lists.into_iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| (name.into(), list.into())));
-    container(&Value::from(root).to_string(), &binary.bytes)
+    Ok(write(scene, &Additions::VertexVisibility { attribute, visibility })?.bytes)
 }
 
-const GENERATOR: &str = concat!("sunbake ", env!("CARGO_PKG_VERSION"));
+fn write(scene: &Scene, additions: &Additions) -> Result<WrittenScene, GlbTooLarge> {
+    let made;
+    let (file, mut root, at, mut not_kept) = match &scene.file {
+        Some(file) => {
+            let mut root = file.json().clone();
+            let (nodes, not_kept) = nodes::expand_copies(scene, &mut root);
+            let primitives = scene.instances.iter().map(|instance| scene.meshes[instance.mesh].gltf).collect();
+            (&**file, root, FilePlaces { nodes, primitives }, not_kept)
+        }
+        None => {
+            let at;
+            (made, at) = made::file_of(scene);
+            (&made, made.json().clone(), at, Vec::new())
+        }
+    };
+    let mut binary = Binary::new(file, &mut root);
+    let written = meshes::write(scene, file, &at, additions, &mut root, &mut binary);
+    if let Additions::Coordinates { occlusion: Some(occlusion), .. } = additions {
+        occlusion.add_to(&written, &mut root, &mut binary, &mut not_kept);
+    }
+    pictures::embed(file, &mut root, &mut binary, &mut not_kept);
+    let bytes = binary.finish(&mut root);
+    references::list_extensions(&mut root);
+    not_kept.extend(written.not_kept);
+    Ok(WrittenScene {
+        bytes: container(&root.to_string(), &bytes)?,
+        places: written.places,
+        has_page_uvs: additions.is_per_instance(),
+        not_kept,
+    })
+}
+
+/// A list at the top level, made if there is none.
+fn list<'a>(root: &'a mut Value, name: &str) -> &'a mut Vec<Value> {
+    if !root.get(name).is_some_and(Value::is_array) {
+        root[name] = Value::Array(Vec::new());
+    }
+    root[name].as_array_mut().expect("it is an array")
+}
+
+/// An index in a JSON object.
+fn index(value: &Value, key: &str) -> Option<usize> {
+    Some(value.get(key)?.as_u64()? as usize)
+}
 
 /// Header, JSON chunk padded with spaces, binary chunk padded with zeros.
 fn container(json: &str, binary: &[u8]) -> Result<Vec<u8>, GlbTooLarge> {

@@ -1,59 +1,50 @@
-//! Writes nodes and cameras.
+//! Nodes: those of the file, and new ones for the copies of a mesh that `EXT_mesh_gpu_instancing` gives to one node.
 
-use super::meshes::Groups;
-use crate::scene::{Node, Scene};
-use glam::{DMat4, DVec4};
-use serde_json::{Map, Value, json};
+use super::{list, made};
+use crate::scene::{GPU_INSTANCING, Scene};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
-/// Indices of nodes without a parent.
-pub(super) fn roots(scene: &Scene) -> Vec<usize> {
-    (0..scene.nodes.len()).filter(|&node| scene.nodes[node].parent.is_none()).collect()
-}
-
-pub(super) fn write(scene: &Scene, groups: &Groups) -> Vec<Value> {
-    let mut nodes: Vec<Map<String, Value>> = scene.nodes.iter().map(transform).collect();
-    for (node, mesh) in groups.mesh_of_node.iter().enumerate() {
-        if let Some(mesh) = mesh {
-            nodes[node].insert("mesh".into(), json!(mesh));
+/// Turns copies into nodes of the file: children of the node whose mesh they draw, before its other children. Gives,
+/// for each of [`Scene::nodes`], its node in the file, and says what is no longer there.
+pub(super) fn expand_copies(scene: &Scene, root: &mut Value) -> (Vec<usize>, Vec<String>) {
+    let mut written: Vec<usize> = scene.nodes.iter().map(|node| node.gltf).collect();
+    let mut copies: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (index, node) in scene.nodes.iter().enumerate().filter(|(_, node)| node.is_copy(&scene.nodes)) {
+        copies.entry(node.gltf).or_default().push(index);
+    }
+    let nodes = list(root, "nodes");
+    for (&parent, copies) in &copies {
+        let Some(object) = nodes.get_mut(parent).and_then(Value::as_object_mut) else { continue };
+        let mesh = object.remove("mesh");
+        let mut children: Vec<Value> = Vec::new();
+        let mut added = Vec::new();
+        let first = nodes.len();
+        for (child, &index) in (first..).zip(copies) {
+            let mut node = made::transform(&scene.nodes[index]);
+            node.extend(mesh.clone().map(|mesh| ("mesh".into(), mesh)));
+            added.push(Value::from(node));
+            children.push(json!(child));
+            written[index] = child;
         }
-    }
-    for (index, camera) in scene.cameras.iter().enumerate() {
-        nodes[camera.node].insert("camera".into(), json!(index));
-    }
-    for (index, parent) in scene.nodes.iter().enumerate().filter_map(|(i, node)| Some((i, node.parent?))) {
-        let children = nodes[parent].entry("children").or_insert_with(|| json!([]));
-        children.as_array_mut().into_iter().for_each(|list| list.push(json!(index)));
-    }
-    nodes.into_iter().map(Value::from).collect()
-}
-
-/// Name and transform: a translation if that is all, else the matrix. Both keep the exact `f64` numbers.
-fn transform(node: &Node) -> Map<String, Value> {
-    let mut written = Map::new();
-    if let Some(name) = &node.name {
-        written.insert("name".into(), json!(name));
-    }
-    let matrix = node.parent_from_node;
-    let is_shift = DMat4::from_cols(matrix.x_axis, matrix.y_axis, matrix.z_axis, DVec4::W) == DMat4::IDENTITY;
-    if !is_shift {
-        written.insert("matrix".into(), json!(matrix.to_cols_array()));
-    } else if matrix.w_axis != DVec4::W {
-        written.insert("translation".into(), json!(matrix.w_axis.truncate().to_array()));
-    }
-    written
-}
-
-/// Cameras with a near plane at a ten-thousandth of the scene's half size and no far plane.
-pub(super) fn cameras(scene: &Scene) -> Vec<Value> {
-    let near = (scene.half_extent_m.max_element() * 1e-4).max(1e-6);
-    let camera = |camera: &crate::scene::SceneCamera| {
-        let mut written = Map::new();
-        if let Some(name) = &camera.name {
-            written.insert("name".into(), json!(name));
+        let object = nodes[parent].as_object_mut().expect("it was one");
+        if let Some(Value::Array(old)) = object.remove("children") {
+            children.extend(old);
         }
-        written.insert("type".into(), json!("perspective"));
-        written.insert("perspective".into(), json!({ "yfov": camera.fov_y_rad, "znear": near }));
-        Value::from(written)
-    };
-    scene.cameras.iter().map(camera).collect()
+        object.insert("children".into(), children.into());
+        remove_extension(object, GPU_INSTANCING);
+        nodes.extend(added);
+    }
+    let note = format!("{GPU_INSTANCING} of {} nodes: their copies are nodes of their own", copies.len());
+    (written, (!copies.is_empty()).then_some(note).into_iter().collect())
+}
+
+/// Takes an extension away from an object, and the list of extensions with the last of them.
+pub(super) fn remove_extension(object: &mut serde_json::Map<String, Value>, name: &str) -> bool {
+    let Some(Value::Object(extensions)) = object.get_mut("extensions") else { return false };
+    let was_there = extensions.remove(name).is_some();
+    if was_there && extensions.is_empty() {
+        object.remove("extensions");
+    }
+    was_there
 }

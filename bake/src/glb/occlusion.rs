@@ -4,12 +4,14 @@
 //! instance gets its own page coordinates; positions, normals and indices stay shared.
 
 use super::binary::Binary;
-use super::materials::{WrittenMaterials, index_of};
+use super::meshes::Written;
+use super::{list, materials, references};
 use crate::atlas::{Atlas, PageSize};
 use crate::maps::{AmbientMaps, in_8_bits};
 use crate::scene::Scene;
 use glam::Vec2;
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A page's occlusion texture for viewers: 8 bits, and of two sides the brighter one. Most models whose materials are
 /// all double-sided are closed, with dark insides, and cameras are mostly outside.
@@ -58,35 +60,63 @@ impl Occlusion<'_> {
         (!placement.is_empty()).then_some(placement.page as usize)
     }
 
-    /// Adds each page's texture to the materials used on the page; a material on several pages is duplicated. Returns
-    /// the material index of every instance.
-    pub(super) fn add_to(&self, scene: &Scene, written: &mut WrittenMaterials, binary: &mut Binary) -> Vec<usize> {
+    /// Adds each page's texture, and gives it to the materials of what lies on the page. A material that other
+    /// primitives use is copied for each page and each set of coordinates but the first.
+    pub(super) fn add_to(&self, written: &Written, root: &mut Value, binary: &mut Binary, not_kept: &mut Vec<String>) {
+        let textures = self.add_textures(root, binary);
+        let mut wanted = BTreeMap::new();
+        for (instance, (mesh, place)) in written.mesh_of_instance.iter().zip(&written.places).enumerate() {
+            if let (Some(mesh), Some(page)) = (mesh, self.page(instance)) {
+                wanted.insert((*mesh, place.primitive), (page, place.uv_set));
+            }
+        }
+        let is_unbaked = |&(mesh, primitive, _): &(usize, usize, &Value)| !wanted.contains_key(&(mesh, primitive));
+        let unbaked = references::primitives(root).filter(is_unbaked);
+        let mut taken: BTreeSet<usize> = unbaked.flat_map(|(.., value)| materials::materials_of(value)).collect();
+        let replaced = references::items(root, "materials").filter(|one| one.get(OCCLUSION).is_some()).count();
+        let mut known: BTreeMap<(Option<usize>, usize, u32), usize> = BTreeMap::new();
+        let mut all = std::mem::take(list(root, "materials"));
+        for ((mesh, primitive), (page, set)) in wanted {
+            let primitive = &mut root["meshes"][mesh]["primitives"][primitive];
+            materials::map_materials(primitive, |material| {
+                let next = all.len();
+                let copy = material.map_or_else(|| Some(json!({})), |material| all.get(material).cloned())?;
+                let index = *known.entry((material, page, set)).or_insert_with(|| match material {
+                    Some(material) if taken.insert(material) => material,
+                    _ => next,
+                });
+                if index == next {
+                    all.push(copy);
+                }
+                all[index][OCCLUSION] = json!({ "index": textures[page], "texCoord": set });
+                Some(index)
+            });
+        }
+        *list(root, "materials") = all;
+        if replaced > 0 {
+            not_kept.push(format!("the occlusion textures of {replaced} materials: the bake's are in their place"));
+        }
+    }
+
+    /// Adds images, a sampler and textures. Returns each page's texture.
+    fn add_textures(&self, root: &mut Value, binary: &mut Binary) -> Vec<usize> {
         // No mip levels: they would blend neighbouring charts.
         let sampler = json!({ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 });
-        let sampler = index_of(&mut written.samplers, sampler);
+        let sampler = push(root, "samplers", sampler);
         let mut add_page = |page: &OcclusionPage| {
-            let view = binary.add_view(page.png.iter().copied());
-            written.images.push(json!({ "bufferView": view, "mimeType": "image/png" }));
-            written.textures.push(json!({ "source": written.images.len() - 1, "sampler": sampler }));
-            written.textures.len() - 1
+            let view = binary.add_view(json!({}), page.png.clone());
+            let image = push(root, "images", json!({ "bufferView": view, "mimeType": "image/png" }));
+            push(root, "textures", json!({ "source": image, "sampler": sampler }))
         };
-        let textures: Vec<usize> = self.pages.iter().map(&mut add_page).collect();
-        let mut known: Vec<(usize, usize, usize)> = Vec::new();
-        let mut material = |instance: usize| {
-            let material = scene.meshes[scene.instances[instance].mesh].material;
-            let Some(page) = self.page(instance) else { return material };
-            if let Some(&(_, _, index)) = known.iter().find(|&&(m, p, _)| (m, p) == (material, page)) {
-                return index;
-            }
-            let is_first = known.iter().all(|&(m, _, _)| m != material);
-            let index = if is_first { material } else { written.materials.len() };
-            if !is_first {
-                written.materials.push(written.materials[material].clone());
-            }
-            written.materials[index]["occlusionTexture"] = json!({ "index": textures[page], "texCoord": 1 });
-            known.push((material, page, index));
-            index
-        };
-        (0..scene.instances.len()).map(&mut material).collect()
+        self.pages.iter().map(&mut add_page).collect()
     }
+}
+
+const OCCLUSION: &str = "occlusionTexture";
+
+/// Adds to a list at the top level. Returns the index.
+fn push(root: &mut Value, name: &str, value: Value) -> usize {
+    let all = list(root, name);
+    all.push(value);
+    all.len() - 1
 }

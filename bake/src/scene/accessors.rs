@@ -14,7 +14,7 @@ use super::{
 #[derive(Clone, Copy)]
 pub(super) struct Reader<'a> {
     pub doc: &'a Document,
-    pub buffers: &'a Buffers<'a>,
+    pub buffers: &'a Buffers,
     pub budget: &'a MemoryBudget,
 }
 
@@ -92,7 +92,8 @@ impl Component {
     }
 }
 
-fn lanes_of(shape: &str) -> Option<usize> {
+/// Number of components of an element of this type.
+pub(super) fn lanes_of(shape: &str) -> Option<usize> {
     Some(match shape {
         "SCALAR" => 1,
         "VEC2" => 2,
@@ -101,6 +102,33 @@ fn lanes_of(shape: &str) -> Option<usize> {
         "MAT3" => 9,
         "MAT4" => 16,
         _ => return None,
+    })
+}
+
+/// The least and the largest value of each component, as they are stored (not normalised).
+pub(super) fn stored_range(component_type: u64, packed: &[u8], lanes: usize) -> Option<[Vec<f64>; 2]> {
+    let component = Component::from_code(component_type)?;
+    let mut low = vec![f64::INFINITY; lanes];
+    let mut high = vec![f64::NEG_INFINITY; lanes];
+    for (at, bytes) in packed.chunks_exact(component.width()).enumerate() {
+        let value = match component {
+            Component::U32 => f64::from(component.unsigned(bytes)),
+            _ => f64::from(component.plain(bytes)),
+        };
+        let (low, high) = (low.get_mut(at % lanes)?, high.get_mut(at % lanes)?);
+        (*low, *high) = (low.min(value), high.max(value));
+    }
+    Some([low, high])
+}
+
+/// Bytes of an element; the columns of matrices begin at multiples of four bytes.
+fn stored_size(shape: &str, width: usize) -> Option<usize> {
+    let column = |rows: usize| (rows * width).next_multiple_of(4);
+    Some(match shape {
+        "MAT2" => 2 * column(2),
+        "MAT3" => 3 * column(3),
+        "MAT4" => 4 * column(4),
+        _ => lanes_of(shape)? * width,
     })
 }
 
@@ -124,6 +152,34 @@ impl<'a> Reader<'a> {
             }
             _ => Err(wrong(index, format!("component type {} is not an unsigned integer", accessor.component_type))),
         }
+    }
+
+    /// The elements as they are stored, packed without gaps, and the bytes of one. Sparse elements are in their places.
+    pub fn packed(&self, index: usize) -> Result<(Vec<u8>, usize), LoadError> {
+        let accessor: document::JsonAccessor = self.doc.get(index)?;
+        let component = component(index, accessor.component_type)?;
+        let size = stored_size(&accessor.shape, component.width())
+            .ok_or_else(|| wrong(index, format!("unknown type {}", accessor.shape)))?;
+        let mut bytes = match accessor.buffer_view {
+            Some(view) => self
+                .elements(index, view, accessor.byte_offset, accessor.count, size)?
+                .iter()
+                .flatten()
+                .copied()
+                .collect(),
+            None => vec![0; accessor.count as usize * size],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let elements =
+                self.elements(index, sparse.values.buffer_view, sparse.values.byte_offset, sparse.count, size)?;
+            for (at, element) in self.sparse_indices(index, sparse)?.zip(elements.iter()) {
+                let place = at.checked_mul(size).and_then(|start| bytes.get_mut(start..start + size));
+                place
+                    .ok_or_else(|| wrong(index, format!("its sparse index {at} is too large")))?
+                    .copy_from_slice(element);
+            }
+        }
+        Ok((bytes, size))
     }
 
     /// Number of components of an element.

@@ -31,7 +31,7 @@ pub fn nearest_texel(image_uv: Vec2, size: [u32; 2], wrap: [Wrap; 2]) -> [u32; 2
 
 /// Texture coordinates of a triangle's corners for a texture, in image space; zero where the mesh has none.
 pub fn image_uvs(mesh: &Mesh, texture: &TextureRef, triangle: usize) -> [Vec2; 3] {
-    let Some(texcoords) = &mesh.texcoords[texture.texcoord.min(1)] else { return [Vec2::ZERO; 3] };
+    let Some(texcoords) = mesh.texcoord_set(texture.texcoord) else { return [Vec2::ZERO; 3] };
     [0, 1, 2].map(|k| {
         let uv = texcoords[mesh.indices[3 * triangle + k] as usize];
         (texture.image_from_texcoord * Vec3::new(uv.x, uv.y, 1.0)).truncate()

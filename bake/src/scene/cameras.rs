@@ -13,7 +13,7 @@ use serde_json::Value;
 /// need it.
 pub(super) fn read(doc: &Document, tree: &NodeTree, centre_m: DVec3, log: &mut WarningLog) -> Vec<SceneCamera> {
     let mut cameras = Vec::new();
-    for (node, placed) in tree.nodes.iter().enumerate().filter(|(_, placed)| !tree.is_copy(placed)) {
+    for (node, placed) in tree.nodes.iter().enumerate().filter(|(_, placed)| !placed.is_copy(&tree.nodes)) {
         let Some(camera) = tree.file_node(placed).and_then(|file| file.camera) else { continue };
         let place = place::<document::JsonCamera>(camera);
         let (camera, bake_from_camera) = match doc.get::<document::JsonCamera>(camera) {

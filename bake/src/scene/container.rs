@@ -5,14 +5,14 @@
 
 use super::{LoadError, limits::MemoryBudget};
 use serde_json::Value;
-use std::{fs::File, io::Read, path::Path};
+use std::{fs::File, io::Read, ops::Range, path::Path};
 
 /// The parts of a scene file.
-pub(super) struct Container<'a> {
+pub(super) struct Container {
     /// The JSON chunk of a GLB, or the whole of a `.gltf`.
     pub json: Value,
-    /// The binary chunk, if any.
-    pub binary: Option<&'a [u8]>,
+    /// Where in the file the binary chunk is, if there is one.
+    pub binary: Option<Range<usize>>,
 }
 
 /// Reads a regular file completely, if it fits into the budget.
@@ -29,9 +29,9 @@ pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &'static str
     Ok(bytes)
 }
 
-impl<'a> Container<'a> {
+impl Container {
     /// Splits a file into its parts and parses the JSON.
-    pub fn parse(path: &Path, bytes: &'a [u8], budget: &MemoryBudget) -> Result<Self, LoadError> {
+    pub fn parse(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Self, LoadError> {
         let (json, binary) = match bytes {
             [] => return Err(not_gltf(path, "it is empty")),
             [b'g', b'l', b'T', b'F', rest @ ..] => split_chunks(path, rest)?,
@@ -62,9 +62,13 @@ fn word<'a>(bytes: &'a [u8]) -> Option<(u32, &'a [u8])> {
     Some((u32::from_le_bytes(*head), tail))
 }
 
-/// `rest` is the file after its first four bytes.
-fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), LoadError> {
-    let cut = || truncated(path, format!("it ends within its header, after {} bytes", rest.len() + 4));
+/// Length of the letters that a GLB begins with.
+const MAGIC_BYTES: usize = 4;
+
+/// `rest` is the file after its first four bytes. Gives the JSON, and where in the file the binary chunk is.
+fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), LoadError> {
+    let file_bytes = rest.len() + MAGIC_BYTES;
+    let cut = || truncated(path, format!("it ends within its header, after {file_bytes} bytes"));
     let (version, rest) = word(rest).ok_or_else(cut)?;
     if version != 2 {
         return Err(wrong_version(path, version.to_string()));
@@ -80,7 +84,8 @@ fn split_chunks<'a>(path: &Path, rest: &'a [u8]) -> Result<(&'a [u8], Option<&'a
     }
     while let Some((kind, data)) = chunk(path, &mut rest)? {
         if kind == *b"BIN\0" {
-            return Ok((json, Some(data)));
+            let end = file_bytes - rest.len();
+            return Ok((json, Some(end - data.len()..end)));
         }
     }
     Ok((json, None))

@@ -1,7 +1,7 @@
 //! Base colour images: format from their first bytes, size checked before decoding, decoded on all cores.
 //!
 //! Only images that a drawn material uses for its base colour are decoded. The others are read, if possible, because
-//! the scene's hash covers every file that it names.
+//! `scene.glb` keeps them, and the scene's hash covers every file that it names.
 
 use super::{
     Image, LoadError,
@@ -25,36 +25,51 @@ pub(super) enum Decoded {
 }
 
 /// A needed image, not decoded yet.
-struct Encoded {
+struct Encoded<'a> {
     file_index: usize,
     name: String,
-    bytes: Vec<u8>,
+    bytes: &'a [u8],
 }
 
-/// Reads the needed images, and hashes all that are separate files.
+/// The bytes of an image that a URI names, or why there are none; `None` for an image in a buffer view.
+pub(super) type Picture = Option<Result<Vec<u8>, LoadError>>;
+
+/// Reads the images that URIs name, needed or not: `scene.glb` keeps them all.
+pub(super) fn fetch(doc: &Document, fetcher: &mut Fetcher) -> Vec<Picture> {
+    let fetch_one = |index: usize| {
+        let place = place::<document::JsonImage>(index);
+        let uri = doc.get::<document::JsonImage>(index).ok()?.uri?;
+        let read = fetcher.fetch(&place, &uri);
+        if let Err(LoadError::TooLarge { .. }) = read {
+            // The scene's hash covers it all the same.
+            let _ = fetcher.hash_only(&place, &uri);
+        }
+        Some(read)
+    };
+    (0..doc.count::<document::JsonImage>()).map(fetch_one).collect()
+}
+
+/// Decodes the needed images.
 pub(super) fn read(
     doc: &Document,
     buffers: &Buffers,
-    fetcher: &mut Fetcher,
+    pictures: &[Picture],
     budget: &MemoryBudget,
     needed: &BTreeSet<usize>,
 ) -> Result<(Vec<Image>, BTreeMap<usize, Decoded>), LoadError> {
     let mut decoded = BTreeMap::new();
     let mut encoded = Vec::new();
-    let count = doc.count::<document::JsonImage>();
-    for file_index in (0..count).chain(needed.range(count..).copied()) {
-        let is_needed = needed.contains(&file_index);
+    for &file_index in needed {
         let name = name(doc, file_index);
-        match bytes(doc, file_index, buffers, fetcher, is_needed) {
-            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) if is_needed => return Err(error),
-            Err(error) if is_needed => {
+        match bytes(doc, file_index, buffers, pictures) {
+            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => return Err(error),
+            Err(error) => {
                 decoded.insert(file_index, Decoded::Failed { name, cause: error.to_string(), has_no_alpha: false });
             }
-            Ok(bytes) if is_needed => {
-                reserve_memory(&bytes, &name, budget)?;
+            Ok(bytes) => {
+                reserve_memory(bytes, &name, budget)?;
                 encoded.push(Encoded { file_index, name, bytes });
             }
-            _ => {}
         }
     }
     let results: Vec<_> = encoded.into_par_iter().map(|e| (e.file_index, decode(e))).collect();
@@ -80,21 +95,20 @@ fn name(doc: &Document, index: usize) -> String {
     named.map_or(place.clone(), |name| format!("{place} \"{name}\""))
 }
 
-fn bytes(
+fn bytes<'a>(
     doc: &Document,
     index: usize,
-    buffers: &Buffers,
-    fetcher: &mut Fetcher,
-    is_needed: bool,
-) -> Result<Vec<u8>, LoadError> {
+    buffers: &'a Buffers,
+    pictures: &'a [Picture],
+) -> Result<&'a [u8], LoadError> {
     let image: document::JsonImage = doc.get(index)?;
-    let place = place::<document::JsonImage>(index);
-    match (image.uri, image.buffer_view) {
-        (Some(uri), _) if is_needed => fetcher.fetch(&place, &uri),
-        (Some(uri), _) => fetcher.hash_only(&place, &uri).map(|()| Vec::new()),
-        (None, Some(view)) if is_needed => Ok(buffers.view(doc, view)?.0.to_vec()),
-        (None, None) => Err(LoadError::structure(place, "it has neither a uri nor a bufferView")),
-        _ => Ok(Vec::new()),
+    match (pictures.get(index), image.buffer_view) {
+        (Some(Some(picture)), _) => picture.as_deref().map_err(LoadError::clone),
+        (_, Some(view)) => Ok(buffers.view(doc, view)?.0),
+        _ => {
+            let problem = "it has neither a uri nor a bufferView";
+            Err(LoadError::structure(place::<document::JsonImage>(index), problem))
+        }
     }
 }
 
@@ -124,11 +138,11 @@ fn format_of(bytes: &[u8]) -> Result<ImageFormat, String> {
 
 fn decode(encoded: Encoded) -> Result<(Image, [u8; 2]), Decoded> {
     let Encoded { name, bytes, .. } = encoded;
-    let format = match format_of(&bytes) {
+    let format = match format_of(bytes) {
         Ok(format) => format,
         Err(cause) => return Err(Decoded::Failed { name, cause, has_no_alpha: false }),
     };
-    let rgba = match decode_rgba(&bytes, format) {
+    let rgba = match decode_rgba(bytes, format) {
         Ok(rgba) => rgba,
         Err(error) => {
             let has_no_alpha = format == ImageFormat::Jpeg;
@@ -138,8 +152,7 @@ fn decode(encoded: Encoded) -> Result<(Image, [u8; 2]), Decoded> {
     let (width, height) = rgba.dimensions();
     let rgba = rgba.as_raw().as_chunks::<4>().0.to_vec();
     let range = rgba.iter().fold([255, 0], |[low, high], [_, _, _, a]| [a.min(&low), a.max(&high)].map(|x: &u8| *x));
-    let mime_type = if format == ImageFormat::Png { "image/png" } else { "image/jpeg" };
-    Ok((Image { name, width, height, rgba, encoded: bytes, mime_type }, range))
+    Ok((Image { name, width, height, rgba }, range))
 }
 
 fn decode_rgba(bytes: &[u8], format: ImageFormat) -> image::ImageResult<image::RgbaImage> {

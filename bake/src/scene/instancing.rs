@@ -11,7 +11,8 @@ use super::{
 use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
 use serde_json::Value;
 
-const NAME: &str = "EXT_mesh_gpu_instancing";
+/// The extension's name.
+pub const GPU_INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// Memory of a copy, as a node and as an instance of its mesh.
 const BYTES_PER_COPY: u64 = 512;
@@ -22,7 +23,7 @@ const BYTES_PER_COPY: u64 = 512;
 ///
 /// If the accessors differ in length or cannot be read.
 pub(super) fn copies(reader: Reader, node: &JsonNode, index: usize) -> Result<Option<Vec<DMat4>>, LoadError> {
-    let extension = node.mesh.and(node.extensions.as_ref()).and_then(|all| all.get(NAME));
+    let extension = node.mesh.and(node.extensions.as_ref()).and_then(|all| all.get(GPU_INSTANCING));
     let Some(extension) = extension else { return Ok(None) };
     let accessor = |name: &str| {
         let attribute = extension.get("attributes").and_then(|attributes| attributes.get(name));
@@ -36,7 +37,8 @@ pub(super) fn copies(reader: Reader, node: &JsonNode, index: usize) -> Result<Op
     // Copies without a transform lie on one another.
     let count = lengths.iter().flatten().copied().max().unwrap_or(1);
     if let Some(other) = lengths.iter().flatten().find(|&&length| length != count) {
-        let problem = format!("the attributes of its {NAME} have {count} and {other} entries: they must be as many");
+        let problem =
+            format!("the attributes of its {GPU_INSTANCING} have {count} and {other} entries: they must be as many");
         return Err(LoadError::structure(place::<JsonNode>(index), problem));
     }
     reader.budget.take(count as u64, BYTES_PER_COPY, || format!("{count} copies of {}", place::<JsonNode>(index)))?;

@@ -6,6 +6,7 @@ use super::{
     cameras, container,
     container::Container,
     document::Document,
+    file::SceneFile,
     images,
     limits::{MemoryBudget, WarningLog},
     materials, nodes,
@@ -18,6 +19,7 @@ use glam::{DMat4, DVec3};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
+    sync::Arc,
 };
 
 /// Loads a glTF or GLB file.
@@ -30,7 +32,7 @@ use std::{
 pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let budget = MemoryBudget::new(limits);
     let bytes = container::read_file(path, &budget, "check the path and its permissions")?;
-    parse_within(path, &bytes, &budget)
+    parse_within(path, &Arc::new(bytes), &budget)
 }
 
 /// Reads the bytes of a glTF or GLB file. Messages name it by `path`, and files that it names are looked for beside
@@ -40,16 +42,16 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
 ///
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8], limits: &LoadLimits) -> Result<Scene, LoadError> {
-    parse_within(path, bytes, &MemoryBudget::new(limits))
+    parse_within(path, &Arc::new(bytes.to_vec()), &MemoryBudget::new(limits))
 }
 
-fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scene, LoadError> {
+fn parse_within(path: &Path, bytes: &Arc<Vec<u8>>, budget: &MemoryBudget) -> Result<Scene, LoadError> {
     let Container { json, binary } = Container::parse(path, bytes, budget)?;
     let doc = Document { root: json };
     refuse::check_required(&doc)?;
     let mut log = WarningLog::default();
     let mut fetcher = Fetcher::new(path, bytes, budget);
-    let buffers = Buffers::read(&doc, binary, &mut fetcher);
+    let buffers = Buffers::read(&doc, bytes, binary.as_ref(), &mut fetcher);
     let reader = Reader { doc: &doc, buffers: &buffers, budget };
     let tree = nodes::read(reader, &mut log)?;
     let mut drawn = primitives::read(reader, &tree, &mut log)?;
@@ -59,17 +61,19 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
     let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let drafts = materials::read(&doc, &mut drawn, &mut log)?;
     let needed = materials::needed_images(&drafts);
-    let (images, decoded) = images::read(&doc, &buffers, &mut fetcher, budget, &needed)?;
+    let pictures = images::fetch(&doc, &mut fetcher);
+    let (images, decoded) = images::read(&doc, &buffers, &pictures, budget, &needed)?;
     let materials = materials::finish(drafts, &decoded, &drawn, &mut log)?;
     if doc.root.get("animations").is_some() {
         log.warn("they are not played; every node has its rest pose", "animations");
     }
     let centre_m = bounds.rounded_centre();
     let cameras: Vec<SceneCamera> = cameras::read(&doc, &tree, centre_m, &mut log);
+    let sun_direction = cameras::sun_direction(&doc, &tree);
     Ok(Scene {
         source: source(path, fetcher),
         instances: drawn.draws.iter().map(|&draw| instance(&tree, draw, centre_m)).collect(),
-        sun_direction: cameras::sun_direction(&doc, &tree),
+        sun_direction,
         nodes: tree.nodes,
         meshes: drawn.meshes,
         materials,
@@ -79,6 +83,7 @@ fn parse_within(path: &Path, bytes: &[u8], budget: &MemoryBudget) -> Result<Scen
         half_extent_m: (bounds.high - bounds.low) * 0.5,
         dropped: drawn.dropped,
         warnings: log.into_warnings(),
+        file: Some(Arc::new(SceneFile::new(doc, buffers, pictures))),
     })
 }
 

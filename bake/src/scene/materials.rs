@@ -92,8 +92,7 @@ fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String>
     };
     Ok(TextureRef {
         image,
-        // Sets 2 and above replace set 0: see `primitives`.
-        texcoord: usize::from(info.texcoord() == 1),
+        texcoord: info.texcoord(),
         image_from_texcoord: info.extensions.transform.as_ref().map_or(Mat3::IDENTITY, image_from_texcoord),
         wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]),
     })

@@ -22,13 +22,16 @@
 //! ([`crate::atlas`]).
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+use std::sync::Arc;
 
 mod accessors;
+mod air;
 pub mod alpha;
 mod cameras;
 mod container;
 mod document;
 mod error;
+mod file;
 mod geometry;
 mod images;
 mod instancing;
@@ -48,7 +51,10 @@ mod tests;
 mod triangles;
 
 pub use error::LoadError;
+pub(crate) use file::PackedElements;
+pub use file::SceneFile;
 pub use geometry::{Geometry, SurfaceTriangle};
+pub(crate) use instancing::GPU_INSTANCING;
 pub use limits::{LoadLimits, SceneWarning};
 pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
@@ -91,6 +97,10 @@ pub struct Scene {
     pub dropped: Dropped,
     /// What the user should know about how the file was read.
     pub warnings: Vec<SceneWarning>,
+    /// The file itself, from which `scene.glb` is made. None of a scene made by code: then `scene.glb` is made from the
+    /// fields above. Whoever changes nodes, meshes, materials or instances of a loaded scene, and wants to see that in
+    /// `scene.glb`, sets this to none.
+    pub file: Option<Arc<SceneFile>>,
 }
 
 /// The file a scene was read from.
@@ -118,6 +128,13 @@ pub struct Node {
     pub world_from_node: DMat4,
 }
 
+impl Node {
+    /// Whether a node is a copy of its parent's mesh (see `instancing.rs`), and no node of the file.
+    pub fn is_copy(&self, nodes: &[Node]) -> bool {
+        self.parent.and_then(|parent| nodes.get(parent)).is_some_and(|parent| parent.gltf == self.gltf)
+    }
+}
+
 /// One glTF primitive, triangulated: one material and one vertex buffer, in object space.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
@@ -129,18 +146,29 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit shading normals, object space; absent: flat shading.
     pub normals: Option<Vec<Vec3>>,
-    /// Sets `TEXCOORD_0` and `TEXCOORD_1` as the file has them. If the base colour uses a higher set, that set replaces
-    /// the first. A texture whose set is absent shows its texel at (0, 0) everywhere.
-    pub texcoords: [Option<Vec<Vec2>>; 2],
+    /// The sets `TEXCOORD_n` that the file has. A texture whose set is absent shows its texel at (0, 0) everywhere.
+    pub texcoords: Vec<Option<Vec<Vec2>>>,
     /// Linear RGBA vertex colour, multiplied with the material's base colour.
     pub colors: Option<Vec<Vec4>>,
     /// Three per triangle, counter-clockwise seen from the front.
     pub indices: Vec<u32>,
     /// Index in [`Scene::materials`].
     pub material: usize,
+    /// For each vertex, its index in the file's primitive; empty where that is the same index.
+    pub file_vertices: Vec<u32>,
 }
 
 impl Mesh {
+    /// A set of texture coordinates, if the mesh has it.
+    pub fn texcoord_set(&self, set: usize) -> Option<&[Vec2]> {
+        self.texcoords.get(set)?.as_deref()
+    }
+
+    /// The index in the file's primitive of a vertex.
+    pub fn file_vertex(&self, vertex: u32) -> u32 {
+        self.file_vertices.get(vertex as usize).copied().unwrap_or(vertex)
+    }
+
     /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
@@ -206,7 +234,7 @@ pub enum Alpha {
 pub struct TextureRef {
     /// Index in [`Scene::images`].
     pub image: usize,
-    /// 0 or 1: which of [`Mesh::texcoords`].
+    /// Which of [`Mesh::texcoords`].
     pub texcoord: usize,
     /// `KHR_texture_transform`: image coordinates from texture coordinates (homogeneous, column-major).
     pub image_from_texcoord: Mat3,
@@ -236,10 +264,6 @@ pub struct Image {
     pub height: u32,
     /// RGBA, 8 bits a channel, `width * height` of them. Colour as stored (sRGB).
     pub rgba: Vec<[u8; 4]>,
-    /// The file's own bytes (PNG or JPEG), for writing the scene again without loss.
-    pub encoded: Vec<u8>,
-    /// `image/png` or `image/jpeg`.
-    pub mime_type: &'static str,
 }
 
 /// A perspective camera. (Orthographic ones are left out with a warning.)

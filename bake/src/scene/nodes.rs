@@ -162,11 +162,6 @@ impl NodeTree {
         self.file.get(node.gltf)
     }
 
-    /// Whether a node is a copy of a mesh (see `instancing.rs`), and no node of the file.
-    pub fn is_copy(&self, node: &Node) -> bool {
-        node.parent.and_then(|parent| self.nodes.get(parent)).is_some_and(|parent| parent.gltf == node.gltf)
-    }
-
     /// World matrices of all nodes of the file, drawn or not, since a skin's joints may be anywhere.
     pub fn world_from_file_nodes(&self) -> Vec<DMat4> {
         let mut worlds: Vec<DMat4> = self.file.iter().map(local_matrix).collect();

@@ -28,6 +28,10 @@ pub(super) struct DrawnMeshes {
 /// A mesh of the file and, if a node poses it (skin or morph weights), that node.
 type PosedMesh = (usize, Option<usize>);
 
+/// Sets of texture coordinates that are read.
+const TEXCOORDS: [&str; 8] =
+    ["TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3", "TEXCOORD_4", "TEXCOORD_5", "TEXCOORD_6", "TEXCOORD_7"];
+
 /// Memory that an instance takes, here and in later steps.
 const BYTES_PER_DRAW: u64 = 256;
 
@@ -141,7 +145,9 @@ impl PrimitiveReader<'_> {
         let normals = normals.map(|all| normals::repaired(gather(&all, &used), &positions, &indices));
         let texcoords = self.texcoords(count, &used, log)?;
         let colors = self.optional_attribute("COLOR_0", count, log, colors)?.map(|all| gather(&all, &used));
-        Ok(Some(Mesh { positions, normals, texcoords, colors, indices, ..Mesh::default() }))
+        let is_whole = used.len() == count;
+        let file_vertices = if is_whole { Vec::new() } else { used };
+        Ok(Some(Mesh { positions, normals, texcoords, colors, indices, file_vertices, ..Mesh::default() }))
     }
 
     fn indices(&self, topology: Topology, vertex_count: usize) -> Result<Vec<u32>, LoadError> {
@@ -163,7 +169,18 @@ impl PrimitiveReader<'_> {
         read: impl Fn(Reader, usize) -> Result<Vec<T>, LoadError>,
     ) -> Result<Option<Vec<T>>, LoadError> {
         let Some(&accessor) = self.primitive.attributes.get(name) else { return Ok(None) };
-        match read(self.reader, accessor) {
+        self.checked(name, count, log, read(self.reader, accessor))
+    }
+
+    /// The values of an attribute that were read, if they are as many as the positions.
+    fn checked<T>(
+        &self,
+        name: &'static str,
+        count: usize,
+        log: &mut WarningLog,
+        read: Result<Vec<T>, LoadError>,
+    ) -> Result<Option<Vec<T>>, LoadError> {
+        match read {
             Ok(values) if values.len() == count => return Ok(Some(values)),
             Err(error @ LoadError::TooLarge { .. }) => return Err(error),
             Ok(_) => log.warn(format!("its {name} has another count than its positions; left out"), self.place),
@@ -172,21 +189,19 @@ impl PrimitiveReader<'_> {
         Ok(None)
     }
 
-    /// Sets 0 and 1. If the base colour uses a higher set, that set replaces set 0.
-    fn texcoords(&self, count: usize, used: &[u32], log: &mut WarningLog) -> Result<[Option<Vec<Vec2>>; 2], LoadError> {
+    /// Every set of texture coordinates. One that the base colour uses must be readable.
+    fn texcoords(&self, count: usize, used: &[u32], log: &mut WarningLog) -> Result<Vec<Option<Vec<Vec2>>>, LoadError> {
         let material = self.material.and_then(|index| self.reader.doc.get::<document::JsonMaterial>(index).ok());
-        let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord()).filter(|&set| set > 1);
-        let first = wanted.map_or_else(|| "TEXCOORD_0".to_owned(), |set| format!("TEXCOORD_{set}"));
-        let mut sets = [None, None];
-        for (set, name) in sets.iter_mut().zip([first.as_str(), "TEXCOORD_1"]) {
-            let Some(&accessor) = self.primitive.attributes.get(name) else { continue };
-            let values = self.reader.floats::<2>(accessor)?;
-            match values.len() == count {
-                true => *set = Some(gather(&values, used).into_iter().map(finite_texcoord).collect()),
-                false => {
-                    log.warn("it has texture coordinates of another count than its positions; left out", self.place);
-                }
-            }
+        let wanted = material.and_then(|m| m.base_color().1).map(|info| info.texcoord());
+        let mut sets = Vec::new();
+        for (set, name) in TEXCOORDS.iter().enumerate() {
+            let Some(&accessor) = self.primitive.attributes.get(*name) else { continue };
+            let values = match self.reader.floats::<2>(accessor) {
+                Err(error) if wanted == Some(set) => return Err(error),
+                read => self.checked(name, count, log, read)?,
+            };
+            sets.resize(set, None);
+            sets.push(values.map(|all| gather(&all, used).into_iter().map(finite_texcoord).collect()));
         }
         Ok(sets)
     }

@@ -11,8 +11,9 @@ use super::{
 };
 use sha2::{Digest, Sha256};
 use std::{
-    borrow::Cow,
+    ops::Range,
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 /// Reads the data that URIs name, and hashes the files among it.
@@ -156,15 +157,41 @@ fn decode_base64(text: &str) -> Result<Vec<u8>, String> {
 }
 
 /// All buffers. One that cannot be read is an error only if something needs it.
-pub(super) struct Buffers<'a> {
-    buffers: Vec<Result<Cow<'a, [u8]>, LoadError>>,
+pub(super) struct Buffers {
+    buffers: Vec<Result<BufferBytes, LoadError>>,
 }
 
-impl<'a> Buffers<'a> {
-    /// Reads every buffer.
-    pub fn read(doc: &Document, binary: Option<&'a [u8]>, fetcher: &mut Fetcher) -> Self {
+/// A buffer's bytes: a part of the scene's own file, which is kept once, or read from elsewhere.
+enum BufferBytes {
+    Part(Arc<Vec<u8>>, Range<usize>),
+    Own(Vec<u8>),
+}
+
+impl BufferBytes {
+    fn bytes(&self) -> &[u8] {
+        match self {
+            Self::Part(file, range) => file.get(range.clone()).unwrap_or(&[]),
+            Self::Own(bytes) => bytes,
+        }
+    }
+}
+
+impl Buffers {
+    /// Reads every buffer. `binary` is where in the file the binary chunk is.
+    pub fn read(doc: &Document, file: &Arc<Vec<u8>>, binary: Option<&Range<usize>>, fetcher: &mut Fetcher) -> Self {
         let count = doc.count::<document::JsonBuffer>();
-        Self { buffers: (0..count).map(|index| read_buffer(doc, index, binary, fetcher)).collect() }
+        let chunk = |index| binary.filter(|_| index == 0).map(|range| (Arc::clone(file), range.clone()));
+        Self { buffers: (0..count).map(|index| read_buffer(doc, index, chunk(index), fetcher)).collect() }
+    }
+
+    /// A single buffer.
+    pub fn of_one(bytes: Vec<u8>) -> Self {
+        Self { buffers: vec![Ok(BufferBytes::Own(bytes))] }
+    }
+
+    /// The bytes of a buffer; `None` if it could not be read.
+    pub fn get(&self, index: usize) -> Option<&[u8]> {
+        self.buffers.get(index)?.as_ref().ok().map(BufferBytes::bytes)
     }
 
     /// The bytes of a buffer view, and its stride if it states one.
@@ -174,7 +201,7 @@ impl<'a> Buffers<'a> {
         let buffer = self.buffers.get(view.buffer).ok_or_else(|| {
             LoadError::structure(place(), format!("it lies in buffers[{}], which does not exist", view.buffer))
         })?;
-        let buffer = buffer.as_ref().map_err(|error| super::refuse::missing_buffer(&view, error))?;
+        let buffer = buffer.as_ref().map_err(|error| super::refuse::missing_buffer(&view, error))?.bytes();
         let end = view.byte_offset.saturating_add(view.byte_length);
         let bytes = buffer.get(view.byte_offset as usize..end as usize).ok_or_else(|| {
             let problem = format!("it ends at byte {end} of buffers[{}], which has {}", view.buffer, buffer.len());
@@ -184,18 +211,18 @@ impl<'a> Buffers<'a> {
     }
 }
 
-fn read_buffer<'a>(
+fn read_buffer(
     doc: &Document,
     index: usize,
-    binary: Option<&'a [u8]>,
+    chunk: Option<(Arc<Vec<u8>>, Range<usize>)>,
     fetcher: &mut Fetcher,
-) -> Result<Cow<'a, [u8]>, LoadError> {
+) -> Result<BufferBytes, LoadError> {
     let buffer: document::JsonBuffer = doc.get(index)?;
     let place = place::<document::JsonBuffer>(index);
-    match (buffer.uri, binary) {
-        (Some(uri), _) => fetcher.fetch(&place, &uri).map(Cow::Owned),
-        (None, Some(binary)) if index == 0 => Ok(Cow::Borrowed(binary)),
-        (None, _) => Err(LoadError::structure(place, "it has no uri, and the file has no binary chunk for it")),
+    match (buffer.uri, chunk) {
+        (Some(uri), _) => fetcher.fetch(&place, &uri).map(BufferBytes::Own),
+        (None, Some((file, range))) => Ok(BufferBytes::Part(file, range)),
+        (None, None) => Err(LoadError::structure(place, "it has no uri, and the file has no binary chunk for it")),
     }
 }
 

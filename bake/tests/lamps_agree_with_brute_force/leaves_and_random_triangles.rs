@@ -15,7 +15,7 @@ fn leaf(builder: SceneBuilder, alpha: impl Fn(u32, u32) -> u8) -> SceneBuilder {
     let positions: Vec<Vec3> = wall([-2.0, 0.2], [2.0, 3.0], 0.5).into_iter().flatten().collect();
     let uvs = positions.iter().map(|p| Vec2::new(p.x * 0.4 + 0.03 * p.y, 0.37 * p.y)).collect();
     let indices = (0..positions.len() as u32).collect();
-    let mesh = Mesh { positions, texcoords: [Some(uvs), None], indices, ..Mesh::default() };
+    let mesh = Mesh { positions, texcoords: vec![Some(uvs)], indices, ..Mesh::default() };
     builder.mesh_of(mesh, alpha_masked(texture), &[glam::DMat4::IDENTITY])
 }
 

@@ -48,7 +48,7 @@ pub struct Stage {
 pub struct Chart {
     /// Index in [`Stage::pages`].
     pub page: u32,
-    /// 0 or 1: which of [`Mesh::texcoords`].
+    /// Which of [`Mesh::texcoords`].
     pub uv_set: usize,
     /// Page coordinates per texture coordinate.
     pub scale: Vec2,
@@ -71,12 +71,14 @@ pub struct CornerAttributes {
 
 impl Stage {
     fn with_charts(
-        scene: Scene,
+        mut scene: Scene,
         charts: Vec<Option<Chart>>,
         pages: Vec<PageMaps>,
         bits: Bits,
         path: Option<SunPath>,
     ) -> Self {
+        // Drawing needs what was read, and not the file's bytes.
+        scene.file = None;
         let normals = ShadingNormals::new(&scene);
         let geometry = Geometry::new(&scene);
         let is_drawn =
@@ -147,7 +149,7 @@ impl Stage {
     }
 
     fn page_uvs(&self, instance: usize, mesh: &Mesh, vertices: [usize; 3]) -> [Vec2; 3] {
-        match (&self.charts[instance], self.charts[instance].and_then(|c| mesh.texcoords[c.uv_set].as_ref())) {
+        match (&self.charts[instance], self.charts[instance].and_then(|c| mesh.texcoord_set(c.uv_set))) {
             (Some(chart), Some(uvs)) => vertices.map(|v| uvs[v] * chart.scale + chart.offset),
             _ => [Vec2::ZERO; 3],
         }

@@ -57,15 +57,16 @@ impl Stage {
     /// Reads a baked set and its scene.
     pub fn read(folder: &Path) -> Result<Self, StageError> {
         let set = sunbake::disk::read::read(folder)?;
-        let (file, baked) = (set.scene_file(), set.manifest.scene.sha256);
+        let (file, baked) = (set.scene_file(), set.manifest.scene.sha256.clone());
         if !file.is_file() {
             return Err(StageError::NoScene { file: file.display().to_string(), sha256: baked });
         }
-        let scene = sunbake::scene::load(&file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+        let mut scene = sunbake::scene::load(&file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
         if let Some(baked) = baked.filter(|baked| *baked != scene.source.sha256) {
             let (file, found) = (file.display().to_string(), scene.source.sha256);
             return Err(StageError::Changed { file, found, baked });
         }
+        set.manifest.leave_out(&mut scene);
         let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
@@ -106,13 +107,13 @@ fn charts(scene: &Scene, entries: &[InstanceEntry], page_count: usize) -> Result
     let mismatch = |reason: String| StageError::Mismatch { reason };
     let chart = |instance: &sunbake::scene::Instance| {
         let mesh = &scene.meshes[instance.mesh];
-        let key = (instance.node, mesh.gltf.1);
+        let key = (scene.nodes[instance.node].gltf, mesh.gltf.1);
         let entry = entry_of
             .get(&key)
             .ok_or_else(|| mismatch(format!("the manifest has no entry for node {}, primitive {}", key.0, key.1)))?;
         let Some(page) = entry.atlas else { return Ok(None) };
         let uv_set = entry.uv_set as usize;
-        let has_uvs = mesh.texcoords.get(uv_set).is_some_and(Option::is_some);
+        let has_uvs = mesh.texcoord_set(uv_set).is_some();
         if !has_uvs || page as usize >= page_count {
             let reason = format!("node {}, primitive {} has no TEXCOORD_{uv_set} or no page {page}", key.0, key.1);
             return Err(mismatch(reason));

@@ -96,6 +96,7 @@ fn lay_out(scene: &mut Scene, geometry: &Geometry, columns: u32, cell: u32) -> V
                 uvs[mesh.indices[3 * triangle + k] as usize] = corners[k] / edge;
             }
         }
+        mesh.texcoords.resize(2, None);
         mesh.texcoords[1] = Some(uvs);
         entries.push(InstanceEntry {
             node: instance.node,

@@ -93,7 +93,7 @@ fn each_property_of_surfaces_adds_its_own_resources() {
     let (builder, image) = SceneBuilder::new().image(4, 4, vec![[90, 120, 60, 255]; 16]);
     let texture = TextureRef { image, texcoord: 0, image_from_texcoord: Mat3::IDENTITY, wrap: [Wrap::Repeat; 2] };
     let textured = Material { base_color_texture: Some(texture), ..opaque() };
-    let mesh = Mesh { texcoords: [Some(vec![Vec2::ZERO; 6]), None], ..quad() };
+    let mesh = Mesh { texcoords: vec![Some(vec![Vec2::ZERO; 6])], ..quad() };
     let adds = Census { pipelines: 1, base_color_textures: 1, vertex_buffers: 1, bind_groups: 1, bindings: 2, ..one };
     holds(&box_and(builder, mesh, textured), "base-colour-textures", adds);
 }

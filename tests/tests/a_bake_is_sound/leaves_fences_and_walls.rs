@@ -18,7 +18,7 @@ fn leaf_over_floor(cutoff: f32) -> Scene {
     let mesh = Mesh {
         indices: (0..positions.len() as u32).collect(),
         positions,
-        texcoords: [Some(uvs), None],
+        texcoords: vec![Some(uvs)],
         ..Mesh::default()
     };
     builder

@@ -18,7 +18,7 @@ fn leaf(cutoff: f32) -> Traced {
     let texture = TextureRef { image, texcoord: 0, image_from_texcoord: Mat3::IDENTITY, wrap: [Wrap::Clamp; 2] };
     let positions: Vec<Vec3> = floor(Vec2::splat(-1.0), Vec2::splat(1.0), 1.0).into_iter().flatten().collect();
     let uvs = positions.iter().map(|p| Vec2::new(0.5 * (p.x + 1.0), 0.5 * (p.z + 1.0))).collect();
-    let mesh = Mesh { indices: (0..6).collect(), positions, texcoords: [Some(uvs), None], ..Mesh::default() };
+    let mesh = Mesh { indices: (0..6).collect(), positions, texcoords: vec![Some(uvs)], ..Mesh::default() };
     let material = Material { alpha: Alpha::Mask { cutoff }, ..alpha_masked(texture) };
     Traced::new(builder.mesh_of(mesh, material, &[DMat4::IDENTITY]).build())
 }

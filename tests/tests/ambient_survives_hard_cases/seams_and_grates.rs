@@ -54,7 +54,7 @@ fn no_seam_shows_where_charts_meet() {
     let settings = BakeSettings { page_size_texels: 256, ambient: Some(request), ..settings() };
     let folder = tempfile::tempdir().expect("a temporary folder");
     let (set, _) = baked(&scene, &settings, folder.path());
-    let scene = sunbake::scene::load(&set.scene_file(), &sunbake::scene::LoadLimits::default()).unwrap();
+    let scene = set.scene(&sunbake::scene::LoadLimits::default()).unwrap();
     let page = &set.pages[0];
     let open = &front(&set).visibility;
     let mut edges: HashMap<[[u32; 3]; 2], Vec<[Vec2; 2]>> = HashMap::new();

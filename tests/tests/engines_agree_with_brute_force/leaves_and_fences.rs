@@ -23,7 +23,7 @@ fn under_a_leaf(seed: u64, wrap: Wrap) -> Traced {
     let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0f32]];
     let leaf = Mesh {
         positions: corners.iter().map(|[x, z]| Vec3::new(*x, 1.0, *z)).collect(),
-        texcoords: [Some(corners.iter().map(|[x, z]| Vec2::new(0.7 * x, 0.6 * z + 0.1)).collect()), None],
+        texcoords: vec![Some(corners.iter().map(|[x, z]| Vec2::new(0.7 * x, 0.6 * z + 0.1)).collect())],
         indices: vec![0, 1, 2, 0, 2, 3],
         ..Mesh::default()
     };
@@ -146,7 +146,7 @@ fn a_clipped_corner_of_a_masks_texel_is_found() {
     let uv = |[x, z]: [f32; 2]| Vec2::new((x - 0.3) + z, z - (x - 0.3)) / 8.0 + 0.5;
     let leaf = Mesh {
         positions: corners.iter().map(|[x, z]| Vec3::new(*x, 1.0, *z)).collect(),
-        texcoords: [Some(corners.iter().map(|corner| uv(*corner)).collect()), None],
+        texcoords: vec![Some(corners.iter().map(|corner| uv(*corner)).collect())],
         indices: vec![0, 1, 2, 0, 2, 3],
         ..Mesh::default()
     };

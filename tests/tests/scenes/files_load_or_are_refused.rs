@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use sunbake::atlas::{Layout, LayoutOrigin};
 use sunbake::glb::write_glb;
-use sunbake::scene::{LoadError, LoadLimits, Mesh, Scene, load};
+use sunbake::scene::{Instance, LoadError, LoadLimits, Mesh, Scene, load};
 use sunbake_tests::needs::{Need, shared, trial};
 
 /// A layout that splits nothing.
@@ -29,8 +29,10 @@ fn rewrite(scene: &Scene, name: &str) -> Scene {
     let path = kept.as_deref().unwrap_or(folder.path()).join(format!("{name}.glb"));
     std::fs::write(&path, &written.bytes).expect("written");
     let again = load(&path, &LoadLimits::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let places: Vec<(usize, usize)> = again.instances.iter().map(|i| (i.node, again.meshes[i.mesh].gltf.1)).collect();
-    assert_eq!(places, written.primitives_of_instances, "{name}");
+    let place = |i: &Instance| (again.nodes[i.node].gltf, again.meshes[i.mesh].gltf.1);
+    let found: Vec<(usize, usize)> = again.instances.iter().map(place).collect();
+    let said: Vec<(usize, usize)> = written.places.iter().map(|place| (place.node, place.primitive)).collect();
+    assert_eq!(found, said, "{name}");
     again
 }
 

@@ -198,7 +198,7 @@ fn layouts_of_single_meshes_get_rectangles_beside_unwrapped_ones() {
 #[test]
 fn islands_of_the_file_that_would_share_texels_are_unwrapped_again() {
     // Four hundred squares with a gap of a thousandth between them: fine at 4096 texels, not at 128.
-    let mut tiles = Mesh { texcoords: [None, Some(Vec::new())], ..Mesh::default() };
+    let mut tiles = Mesh { texcoords: vec![None, Some(Vec::new())], ..Mesh::default() };
     for k in 0..400u32 {
         let at = Vec2::new((k % 20) as f32, (k / 20) as f32) / 20.0;
         let mut quad = lit_quad(at, at + 0.049);

@@ -125,7 +125,7 @@ fn b12_each_of_160_instances_has_its_own_texels() {
 fn b16_coordinates_that_cannot_be_used_are_replaced() {
     let with = |uvs: Option<Vec<Vec2>>| {
         let mut two = triangles(&[[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::Z, Vec3::Z + Vec3::Y, Vec3::Z + Vec3::X]]);
-        two.texcoords = [uvs.clone(), uvs];
+        two.texcoords = vec![uvs.clone(), uvs];
         origin_of(&scene(vec![(two, once())]))
     };
     let corner = [(0.1, 0.1), (0.4, 0.1), (0.1, 0.9)].map(Vec2::from);

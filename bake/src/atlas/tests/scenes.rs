@@ -18,6 +18,7 @@ pub fn scene(parts: Vec<(Mesh, Vec<DMat4>)>) -> Scene {
         half_extent_m: DVec3::ONE,
         dropped: Dropped::default(),
         warnings: Vec::new(),
+        file: None,
     };
     for (mesh, matrices) in parts {
         for matrix in matrices {
@@ -128,6 +129,6 @@ pub fn triangles(corners: &[[Vec3; 3]]) -> Mesh {
 pub fn lit_quad(low: Vec2, high: Vec2) -> Mesh {
     let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
     let mut quad = mesh(corners.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec(), vec![0, 2, 1, 0, 3, 2]);
-    quad.texcoords[1] = Some(corners.map(|(x, z)| low + (high - low) * Vec2::new(x, z)).to_vec());
+    quad.texcoords = vec![None, Some(corners.map(|(x, z)| low + (high - low) * Vec2::new(x, z)).to_vec())];
     quad
 }

@@ -80,7 +80,7 @@ fn normalised_integers_become_fractions() {
     let mesh = b.triangle_mesh(json!({ "TEXCOORD_0": uv0, "TEXCOORD_1": uv1, "COLOR_0": color }));
     b.node(json!({ "mesh": mesh }));
     let mesh = &b.scene().meshes[0];
-    let [uv0, uv1] = mesh.texcoords.each_ref().map(|set| set.as_ref().expect("a set"));
+    let [uv0, uv1] = [0, 1].map(|set| mesh.texcoord_set(set).expect("a set"));
     assert_eq!(uv0[0], Vec2::new(0.0, 1.0));
     assert_eq!(uv0[2], Vec2::new(0.0, 0.2));
     assert_eq!((uv1[0], uv1[1]), (Vec2::new(0.0, 1.0), Vec2::new(0.2, 0.0)));
