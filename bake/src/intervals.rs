@@ -72,6 +72,22 @@ impl IntervalTable {
         self.ends.push(self.intervals.len() as u32);
     }
 
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// Those of a point: start and end of each.
+    pub fn get(&self, index: usize) -> &[[f64; 2]] {
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
+        &self.intervals[start..self.ends[index] as usize]
+    }
+
     /// Each point's, in order.
     pub fn iter(&self) -> impl Iterator<Item = Intervals> + '_ {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());

@@ -6,6 +6,7 @@ use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
 use crate::scene::{Geometry, LoadError, LoadLimits, Scene};
 use crate::trace::Tracer;
+use crate::visibility::BuriedPoints;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -30,6 +31,9 @@ pub struct Texel {
     pub origin: [f64; 3],
     /// Origin of rays towards suns behind the plane, if they count; world space, metres.
     pub origin_back: Option<[f64; 3]>,
+    /// Whether the texel is buried, so that its times are what its neighbours agree on.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_filled: bool,
     /// Stored path times (0 to 1) from when to when the texel sees the sun; of several lanes, the middle one's.
     pub lit: Vec<[f64; 2]>,
     /// Every lane's times, if the set has several lanes.
@@ -93,6 +97,9 @@ fn describe(
     let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
     let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
     let texel = sample.texel as usize;
+    let texel_m = 1.0 / set.manifest.scene.texels_per_metre;
+    let buried = BuriedPoints { scene, geometry, tracer, texel_m };
+    let is_filled = lanes.iter().any(|lane| !lane.lit.is_empty()) && buried.is_buried(&point);
     let front = maps.ambient.as_ref().map(|ambient| &ambient.front);
     let back = maps.ambient.as_ref().and_then(|ambient| ambient.back.as_ref());
     Texel {
@@ -105,6 +112,7 @@ fn describe(
         double_sided: point.is_double_sided,
         origin: origin(point.normal),
         origin_back: point.is_double_sided.then(|| origin(-point.normal)),
+        is_filled,
         lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
         lanes: if lanes.len() > 1 { lanes } else { Vec::new() },
         lamp: maps.lamp.as_ref().map(|layers| stored_intervals(layers, sample.texel as usize, set.bits)),

@@ -20,8 +20,8 @@ pub enum Warning {
     /// Something in the scene was not read as the file has it.
     #[error("{0}")]
     Scene(SceneWarning),
-    /// `scene.glb` lacks something of the scene's own file.
-    #[error("scene.glb does not keep {0}")]
+    /// `scene.glb` has something otherwise than the scene's own file: what, in a sentence.
+    #[error("scene.glb: {0}")]
     NotKept(String),
     /// The sun stays below the horizon all day.
     #[error(

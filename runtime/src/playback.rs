@@ -26,6 +26,7 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
         lamp_layer_count,
         ambient: ambient_model(page),
         has_backs: page.ambient.as_ref().is_some_and(|ambient| ambient.back.is_some()),
+        has_walls: page.walls.is_some(),
     }
 }
 
@@ -87,7 +88,11 @@ impl<'a> Page<'a> {
         let size = PageSize { width: self.maps.width, height: self.maps.height };
         // In `f32`, as the shaders do it.
         let point = page_uv * Vec2::new(size.width as f32, size.height as f32) - 0.5;
-        Footprint::new(point.as_dvec2(), size)
+        let footprint = Footprint::new(point.as_dvec2(), size);
+        match &self.maps.walls {
+            Some(codes) => footprint.beside_walls(codes),
+            None => footprint,
+        }
     }
 
     /// Visibility of the sun by the maps, 0 to 1, and no more than the share of its disc above the surface's plane.

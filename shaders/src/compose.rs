@@ -58,6 +58,8 @@ pub struct PageVariant {
     pub ambient: AmbientModel,
     /// Whether maps of ambient light have a slice for the backs of surfaces.
     pub has_backs: bool,
+    /// Whether something stands between neighbouring texels, so that filters must not blend across it.
+    pub has_walls: bool,
 }
 
 /// How ambient light on a page's surfaces is computed. Each model reads more than the one before.
@@ -78,6 +80,11 @@ impl PageVariant {
     /// Layers of the page's `rise` texture, and of its `fall` texture. 0: no texture, no binding and no loop.
     pub fn layer_count(&self) -> u32 {
         self.lanes.iter().map(|lane| lane.layer_count).sum()
+    }
+
+    /// Whether any map of texels is read.
+    pub fn reads_texels(&self) -> bool {
+        self.layer_count() > 0 || self.lamp_layer_count > 0 || self.ambient != AmbientModel::Hemisphere
     }
 }
 
@@ -156,8 +163,9 @@ pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String 
 /// What evaluates a page's maps: the texels around a page coordinate, and the lit share of stored times.
 fn push_evaluation(text: &mut String, page: &PageVariant) {
     let (has_sun, has_lamp) = (page.layer_count() > 0, page.lamp_layer_count > 0);
-    if has_sun || has_lamp || page.ambient != AmbientModel::Hemisphere {
+    if page.reads_texels() {
         text.push_str(wgsl!("baked/footprint"));
+        text.push_str(if page.has_walls { wgsl!("baked/blend_beside_walls") } else { wgsl!("baked/blend") });
     }
     if has_sun || has_lamp {
         // Writing to a string cannot fail.

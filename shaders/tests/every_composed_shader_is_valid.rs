@@ -33,6 +33,7 @@ fn pages() -> Vec<PageVariant> {
         lamp_layer_count,
         ambient,
         has_backs: lamp_layer_count > 0,
+        has_walls: false,
     };
     let of_lanes = |l| {
         let ambient = [AmbientModel::Occlusion, AmbientModel::Bent, AmbientModel::Sky];
@@ -40,7 +41,9 @@ fn pages() -> Vec<PageVariant> {
         std::iter::once(plain)
             .chain(ambient.into_iter().flat_map(move |a| [with(l, 65_535, a, 0), with(l, 65_535, a, 3)]))
     };
-    lanes.iter().flat_map(of_lanes).collect()
+    let open: Vec<PageVariant> = lanes.iter().flat_map(of_lanes).collect();
+    let walled = open.iter().map(|page| PageVariant { has_walls: true, ..page.clone() });
+    walled.chain(open.iter().cloned()).collect()
 }
 
 fn shadow_sources() -> Vec<ShadowSource> {

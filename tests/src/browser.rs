@@ -70,17 +70,22 @@ fn verdict_in(document: &str) -> Option<Verdict> {
     Some(serde_json::from_str(&json).unwrap_or_else(|error| panic!("{error} in the verdict {json}")))
 }
 
+/// Chromium without a window, with a profile in this folder.
+pub(crate) fn headless(folder: &Path) -> Command {
+    let mut command = Command::new(find_chromium());
+    // Root has no sandbox; the page is ours.
+    command.args(["--headless", "--no-sandbox", "--no-first-run", WINDOW]);
+    command.arg(flag("--user-data-dir=", &folder.join("profile"))).stdin(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
 /// The document that a page has become once it is loaded.
 fn printed(page: &Path, folder: &Path) -> String {
     let document = folder.join("document.html");
-    let chromium = find_chromium();
-    let mut command = Command::new(&chromium);
-    // Root has no sandbox; the page is ours.
-    command.args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", WINDOW, "--dump-dom"]);
-    command.arg(format!("--timeout={}", LIMIT_S * 1000)).arg(flag("--user-data-dir=", &folder.join("profile")));
-    command.arg(flag("file://", page)).stdin(Stdio::null()).stderr(Stdio::null());
-    command.stdout(File::create(&document).expect("a folder to write in"));
-    let mut child = command.spawn().unwrap_or_else(|error| panic!("{}: {error}", chromium.display()));
+    let mut command = headless(folder);
+    command.args(["--disable-gpu", "--dump-dom"]).arg(format!("--timeout={}", LIMIT_S * 1000));
+    command.arg(flag("file://", page)).stdout(File::create(&document).expect("a folder to write in"));
+    let mut child = command.spawn().expect("Chromium starts");
     let start = Instant::now();
     while child.try_wait().expect("a child can be waited for").is_none() {
         if start.elapsed() > Duration::from_secs(LIMIT_S + GRACE_S) {

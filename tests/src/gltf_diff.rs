@@ -185,7 +185,8 @@ fn unescaped(text: &str) -> Vec<u8> {
     out
 }
 
-fn base64(text: &str) -> Option<Vec<u8>> {
+/// Decodes RFC 4648.
+pub(crate) fn base64(text: &str) -> Option<Vec<u8>> {
     const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let digits: Option<Vec<u32>> = text
         .bytes()

@@ -11,6 +11,7 @@ pub mod gltf_diff;
 pub mod needs;
 mod oracle;
 pub mod paths;
+pub mod viewer;
 
 pub use agreement::Agreement;
 pub use oracle::Oracle;

@@ -42,6 +42,12 @@ impl Need {
         Self::tool(is_there, &format!("node, or {}, is not installed", package.display()))
     }
 
+    /// The stock viewer, and a browser that runs it. With `SUNBAKE_REQUIRE_TOOLS=1`, a test without it fails.
+    pub fn viewer() -> Self {
+        let package = viewer_folder().join("node_modules/three");
+        Self::tool(package.is_dir(), &format!("{} is not installed", package.display()))
+    }
+
     fn tool(is_there: bool, absent: &str) -> Self {
         let advice = format!("{absent}: tests/setup installs it where it can");
         Self { is_there, is_required: is_set("SUNBAKE_REQUIRE_TOOLS"), advice }
@@ -94,6 +100,11 @@ pub fn shared(name: &str) -> PathBuf {
 /// Where `tests/setup` installs the Khronos glTF validator.
 pub fn validator_folder() -> PathBuf {
     workspace().join("target/gltf-validator")
+}
+
+/// Where `tests/setup` installs three.js, the stock viewer.
+pub fn viewer_folder() -> PathBuf {
+    workspace().join("target/viewer")
 }
 
 /// The repository's root.

@@ -11,7 +11,7 @@
 //! Practice: a few rays over the hemisphere. The first that meets no back decides, which is the first or second for
 //! nearly every point. Where a back and a front coincide (doubled faces with both windings), the front counts.
 
-use super::directions::{DirectionSample, NormalFrame, sample_block};
+use super::directions::{DirectionSample, FIXED_SEED, NormalFrame, sample_block};
 use super::point::AmbientPoint;
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, PacketScratch, PacketTracer, ShadowQuery, Tracer};
@@ -19,8 +19,6 @@ use glam::DVec3;
 
 /// Most rays that are traced.
 const RAYS: u32 = 16;
-/// Seed of their directions: the same for all points.
-const SEED: u32 = 0x5eed;
 /// A front that is farther than a back by no more than this share of the distance counts as coincident.
 const COINCIDENT: f64 = 1e-5;
 
@@ -39,7 +37,7 @@ pub(super) struct BuriedTest<'a> {
 impl<'a> BuriedTest<'a> {
     pub fn new(scene: &'a Scene, geometry: &'a Geometry, tracer: &'a Tracer, counts_double_sided: bool) -> Self {
         let mut directions = vec![DirectionSample::default(); RAYS as usize];
-        sample_block(SEED, 0, RAYS, &mut directions);
+        sample_block(FIXED_SEED, 0, RAYS, &mut directions);
         let has_backs = counts_double_sided || (0..scene.instances.len()).any(|i| !scene.material(i).is_double_sided);
         Self { scene, geometry, tracer, directions, counts_double_sided, has_backs }
     }

@@ -119,6 +119,17 @@ fn on_disc(point: Vec2) -> Vec2 {
     Vec2::from_angle(angle) * radius
 }
 
+/// A few directions over the hemisphere of a normal, always the same.
+pub(crate) fn hemisphere_directions(normal: DVec3, count: u32) -> impl Iterator<Item = DVec3> {
+    let mut samples = vec![DirectionSample::default(); count as usize];
+    sample_block(FIXED_SEED, 0, count, &mut samples);
+    let frame = NormalFrame::new(normal);
+    samples.into_iter().map(move |sample| frame.direction(&sample))
+}
+
+/// Seed of directions that are the same for all points.
+pub(super) const FIXED_SEED: u32 = 0x5eed;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,18 +1,39 @@
 //! The four texels that a bilinear filter reads at a point of a page, as GPUs do it and as every CPU twin does.
 
 use super::PageSize;
-use glam::DVec2;
+use super::reach::{OPEN, Reach};
+use glam::{DVec2, Vec3};
 use std::array;
 use std::ops::{Add, Mul};
 
+/// A value of texels that a filter can blend.
+pub trait Filtered: Copy + Mul<f32, Output = Self> + Add<Output = Self> {
+    /// The darker of two.
+    fn darker(self, other: Self) -> Self;
+}
+
+impl Filtered for f32 {
+    fn darker(self, other: Self) -> Self {
+        self.min(other)
+    }
+}
+
+impl Filtered for Vec3 {
+    fn darker(self, other: Self) -> Self {
+        self.min(other)
+    }
+}
+
 /// Four texels around a point of a page, and where the point lies between their centres.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Footprint {
     /// `y * width + x` of each: upper left, upper right, lower left, lower right. Beyond the page's border the border's
     /// own texel is repeated.
     pub texels: [usize; 4],
     /// From the upper left texel's centre to the others', 0 to 1 along x and along y.
     pub fraction: DVec2,
+    /// How the texels count beside walls; none without.
+    pub reach: Option<Reach>,
 }
 
 impl Footprint {
@@ -26,34 +47,45 @@ impl Footprint {
             let y = (low.y + (k / 2) as f64).clamp(0.0, last.y) as usize;
             y * size.width as usize + x
         };
-        Self { texels: array::from_fn(texel), fraction: point - low }
+        Self { texels: array::from_fn(texel), fraction: point - low, reach: None }
     }
 
     /// Weights of the texels, in their order.
     pub fn weights(&self) -> [f64; 4] {
         let DVec2 { x, y } = self.fraction;
-        products([1.0 - x, x], [1.0 - y, y])
+        [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
     }
 
-    /// The same, computed in `f32`.
-    pub fn weights_f32(&self) -> [f32; 4] {
-        let [x, y] = self.fraction.as_vec2().to_array();
-        products([1.0 - x, x], [1.0 - y, y])
+    /// The same among walls: `codes` are a page's, in row order ([`super::find_walls`]).
+    pub fn beside_walls(self, codes: &[[u8; 2]]) -> Self {
+        let [upper_left, upper_right, lower_left, _] = self.texels;
+        let code = |texel: usize, way: usize| codes[texel][way];
+        self.among([code(upper_left, 0), code(lower_left, 0), code(upper_left, 1), code(upper_right, 1)])
     }
 
-    /// Values of the texels blended along x and then along y, in `f32`, as the shaders do it.
-    pub fn blend<T: Mul<f32, Output = T> + Add<Output = T>>(&self, value: impl Fn(usize) -> T) -> T {
-        let [x, y] = self.fraction.as_vec2().to_array();
-        let mix = |a: T, b: T, weight: f32| a * (1.0 - weight) + b * weight;
-        let [top_left, top_right, bottom_left, bottom_right] = self.texels;
-        let top = mix(value(top_left), value(top_right), x);
-        let bottom = mix(value(bottom_left), value(bottom_right), x);
-        mix(top, bottom, y)
+    /// The same with the codes of the upper, lower, left and right edge.
+    pub fn among(self, codes: [u8; 4]) -> Self {
+        let reach = (codes != [OPEN; 4]).then(|| Reach::new(self.fraction.as_vec2().to_array(), codes));
+        Self { reach, ..self }
     }
-}
 
-fn products<T: Copy + Mul<Output = T>>([left, right]: [T; 2], [top, bottom]: [T; 2]) -> [T; 4] {
-    [left * top, right * top, left * bottom, right * bottom]
+    /// Values of the texels blended, in `f32`, as the shaders do it: without walls along x and then along y.
+    pub fn blend<T: Filtered>(&self, value: impl Fn(usize) -> T) -> T {
+        let [top_left, top_right, bottom_left, bottom_right] = self.texels.map(value);
+        match self.reach {
+            None => {
+                let [x, y] = self.fraction.as_vec2().to_array();
+                let mix = |a: T, b: T, weight: f32| a * (1.0 - weight) + b * weight;
+                mix(mix(top_left, top_right, x), mix(bottom_left, bottom_right, x), y)
+            }
+            Some(Reach { takes_darkest: true, .. }) => {
+                top_left.darker(top_right).darker(bottom_left.darker(bottom_right))
+            }
+            Some(Reach { weights: [a, b, c, d], .. }) => {
+                (top_left * a + top_right * b) + (bottom_left * c + bottom_right * d)
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -68,7 +100,7 @@ mod tests {
         assert_eq!((at_centre.texels[0], at_centre.weights()), (1, [1.0, 0.0, 0.0, 0.0]));
         let between = Footprint::new(DVec2::new(1.5, 0.75), SIZE);
         assert_eq!(between.texels, [1, 2, 5, 6]);
-        assert_eq!(between.weights_f32(), [0.125, 0.125, 0.375, 0.375]);
+        assert_eq!(between.weights(), [0.125, 0.125, 0.375, 0.375]);
         assert_eq!(between.blend(|texel| texel as f32), 4.5);
     }
 

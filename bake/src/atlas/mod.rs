@@ -20,6 +20,7 @@ mod measure;
 mod meter;
 mod outline;
 mod overlap;
+mod reach;
 mod samples;
 mod search;
 mod shared;
@@ -28,12 +29,15 @@ mod strip;
 mod tests;
 mod tile;
 mod unwrap;
+mod walls;
 
 pub use build::build;
 pub use error::AtlasError;
-pub use footprint::Footprint;
+pub use footprint::{Filtered, Footprint};
 pub use gutter::{GutterTexel, gutter};
+pub use reach::{OPEN, Reach, wall_code};
 pub use samples::{in_tile_order, sample_page, sample_page_supersampled, surface_point};
+pub use walls::{WallFinder, find_walls};
 
 /// Settings for building an atlas.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -60,6 +60,8 @@ pub(super) struct LightAccount {
     pub intervals: u64,
     pub dark_texels: u64,
     pub most_intervals: u64,
+    /// Buried texels that show what their neighbours agree on.
+    pub filled_texels: u64,
     /// Texels that one layer does not hold, along some lane.
     pub crowded_texels: u64,
     pub loss: LossStatistics,
@@ -75,19 +77,14 @@ impl LaneEncoders {
     }
 
     /// Stores a texel's answers, one a lane; its loss is the lanes' mean by weight.
-    pub fn set(
-        &mut self,
-        texel: usize,
-        answers: &mut impl Iterator<Item = Intervals>,
-        account: &mut LightAccount,
-    ) -> EncodeLoss {
+    pub fn set(&mut self, texel: usize, answers: &[Intervals], account: &mut LightAccount) -> EncodeLoss {
         let mut loss = EncodeLoss::default();
         let (mut found, mut most) = (0, 0);
         for ((lane, encoder), lit) in self.0.iter_mut().zip(answers) {
             let count = lit.as_slice().len() as u64;
             found += count;
             most = most.max(count);
-            loss.add_lane(&encoder.set(texel, &lit), lane.weight);
+            loss.add_lane(&encoder.set(texel, lit), lane.weight);
         }
         account.intervals += found;
         account.most_intervals = account.most_intervals.max(most);

@@ -131,12 +131,14 @@ fn bake_prepared(
     let ambient = request.zip(engine.as_ref());
     let ambient = ambient.map(|(request, engine)| AmbientJob { engine, request, normals: &normals });
     let lights = Lights { sun, lamp, ambient };
-    let mut pages = PageBaker::new(scene, &geometry, atlas, settings, lights, progress, seconds);
+    let mut pages = PageBaker::new(scene, &geometry, &tracer, atlas, settings, lights, progress);
+    pages.stats.seconds = seconds;
     let atlases = pages.bake_all(sink)?;
     let occlusion = (!pages.occlusion.is_empty()).then(|| Occlusion { atlas, pages: &pages.occlusion });
     let written = glb::write_glb(scene, &atlas.layouts, occlusion)?;
     let (vertices_glb, vertices) = pages.bake_vertices()?.unzip();
     let needed = layers_needed(&pages, &atlases);
+    let walled = [atlases.iter().filter(|page| page.walls.is_some()).count(), atlases.len()];
     let mut manifest = finished(pages, prepared, &lights, settings);
     if let Some(ambient) = &mut manifest.ambient {
         ambient.vertices = vertices;
@@ -145,7 +147,7 @@ fn bake_prepared(
         scene: SceneEntry { sha256: Some(scene::sha256(&written.bytes)), ..manifest.scene },
         atlases,
         instances: instance_entries(scene, atlas, &written),
-        effects: plan.clone().after_bake(needed).entries(),
+        effects: plan.clone().after_bake(needed, walled).entries(),
         ..manifest
     };
     check_cancelled(progress)?;
@@ -183,7 +185,7 @@ fn layers_needed(pages: &PageBaker, atlases: &[AtlasEntry]) -> LayersNeeded {
 fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &BakeSettings) -> Manifest {
     let PageBaker { stats, sun, lamp, atlas, ambient_account, .. } = pages;
     let manifest = manifest_of(prepared, atlas, settings);
-    let LightAccount { work, intervals, dark_texels, most_intervals, loss, .. } = sun;
+    let LightAccount { work, intervals, dark_texels, most_intervals, filled_texels, loss, .. } = sun;
     let lamp = manifest.lamp.zip(lights.lamp).map(|(entry, light)| {
         let (stats, error) = lamp.of_lamp(&light);
         LampEntry { stats, error, ..entry }
@@ -197,6 +199,7 @@ fn finished(pages: PageBaker, prepared: &Prepared, lights: &Lights, settings: &B
             triangle_tests: work.triangles,
             intervals,
             dark_texels,
+            filled_texels,
             most_intervals,
             ..stats
         },

@@ -4,22 +4,36 @@ use super::baked::PageSink;
 use super::error::BakeError;
 use super::light::{AmbientAccount, LaneEncoders, LightAccount, LightJob, Lights};
 use super::timing::{check_cancelled, timed};
-use crate::atlas::{self, Atlas, PageSamples};
+use crate::atlas::{self, Atlas, GutterTexel, PageSamples, WallFinder};
 use crate::disk::BakedPage;
-use crate::disk::manifest::{AtlasEntry, Stats, StepSeconds};
+use crate::disk::manifest::{AtlasEntry, Stats};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
 use crate::maps::{AmbientMaps, LaneMaps, PageMaps};
 use crate::progress::{BakeStep, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
-use crate::visibility::{self, IntervalTable, Work};
+use crate::trace::Tracer;
+use crate::visibility::{self, Answers, BuriedPoints, IntervalTable, Intervals, Work, fill_buried};
 use std::time::Instant;
+
+/// The texels of a page.
+#[derive(Clone, Copy)]
+struct PageTexels<'a> {
+    /// Those that surfaces cover.
+    samples: &'a PageSamples,
+    /// Their order, tile by tile.
+    order: &'a [u32],
+    /// Those that copy them.
+    gutter: &'a [GutterTexel],
+}
 
 /// Bakes pages, and keeps the statistics.
 pub(super) struct PageBaker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) geometry: &'a Geometry,
+    walls: WallFinder<'a>,
+    buried: BuriedPoints<'a>,
     pub atlas: &'a Atlas,
     pub(super) settings: &'a BakeSettings,
     pub(super) lights: Lights<'a>,
@@ -38,11 +52,11 @@ impl<'a> PageBaker<'a> {
     pub fn new(
         scene: &'a Scene,
         geometry: &'a Geometry,
+        tracer: &'a Tracer,
         atlas: &'a Atlas,
         settings: &'a BakeSettings,
         lights: Lights<'a>,
         progress: &'a dyn Progress,
-        seconds: StepSeconds,
     ) -> Self {
         let stats = Stats {
             triangles: scene.triangle_count() as u64,
@@ -50,7 +64,6 @@ impl<'a> PageBaker<'a> {
             charts: atlas.chart_count as u64,
             engine: lights.sun.map_or("none".into(), |sun| sun.engine.name()),
             threads: rayon::current_num_threads(),
-            seconds,
             ..Stats::default()
         };
         let (sun, lamp, ambient_account) =
@@ -59,6 +72,8 @@ impl<'a> PageBaker<'a> {
         Self {
             scene,
             geometry,
+            walls: WallFinder::new(scene, geometry, atlas, tracer),
+            buried: BuriedPoints { scene, geometry, tracer, texel_m: 1.0 / atlas.texels_per_metre },
             atlas,
             settings,
             lights,
@@ -95,12 +110,16 @@ impl<'a> PageBaker<'a> {
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
         self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
         let order = atlas::in_tile_order(&samples, size);
+        let gutter = atlas::gutter(size, &samples, self.settings.padding_texels);
+        let texels = PageTexels { samples: &samples, order: &order, gutter: &gutter };
+        let finder = &self.walls;
+        let walls = timed(&mut self.stats.seconds.unwrap, || atlas::find_walls(finder, size, &samples, &gutter));
         let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
-        let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, &samples, &order)).transpose()?;
+        let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, texels)).transpose()?;
         self.sun = account;
         let mut account = std::mem::take(&mut self.lamp);
-        let lamp = lamp.map(|lamp| self.bake_light(index, &lamp, &mut account, &samples, &order)).transpose()?;
+        let lamp = lamp.map(|lamp| self.bake_light(index, &lamp, &mut account, texels)).transpose()?;
         self.lamp = account;
         check_cancelled(self.progress)?;
         let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
@@ -108,7 +127,8 @@ impl<'a> PageBaker<'a> {
         let request = self.settings.ambient.as_ref();
         let ambient =
             numbers.as_ref().zip(request).map(|(page, request)| AmbientMaps::of(page).rounded_to(request.bits));
-        let maps = PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient };
+        let maps =
+            PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient, walls };
         let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));
         Ok(BakedPage { maps, ambient_numbers, loss_map: self.loss_map.take() })
     }
@@ -119,12 +139,11 @@ impl<'a> PageBaker<'a> {
         page: usize,
         light: &LightJob,
         account: &mut LightAccount,
-        samples: &PageSamples,
-        order: &[u32],
+        texels: PageTexels,
     ) -> Result<Vec<LaneMaps>, BakeError> {
-        let (tables, work) = self.solve_visibility(light, samples, order).ok_or(BakeError::Cancelled)?;
+        let (tables, work) = self.solve_visibility(light, texels.samples, texels.order).ok_or(BakeError::Cancelled)?;
         account.work = account.work + work;
-        Ok(self.encode(page, light, account, samples, order, &tables))
+        Ok(self.encode(page, light, account, texels, &tables))
     }
 
     /// Lit intervals, in the given order of samples.
@@ -150,8 +169,7 @@ impl<'a> PageBaker<'a> {
         page: usize,
         light: &LightJob,
         account: &mut LightAccount,
-        samples: &PageSamples,
-        order: &[u32],
+        PageTexels { samples, order, gutter }: PageTexels,
         tables: &[IntervalTable],
     ) -> Vec<LaneMaps> {
         let PageSamples { samples: texels } = samples;
@@ -159,15 +177,20 @@ impl<'a> PageBaker<'a> {
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);
+        let answers = Answers { tables, lane_count: light.lanes.len() };
+        let filled = fill_buried(&self.buried, size, samples, order, answers);
+        account.filled_texels += filled.len() as u64;
         let mut answers = tables.iter().flat_map(IntervalTable::iter);
-        for sample in order.iter().map(|&i| &texels[i as usize]) {
-            let loss = encoders.set(sample.texel as usize, &mut answers, account);
+        for (place, sample) in order.iter().map(|&i| &texels[i as usize]).enumerate() {
+            let own: Vec<Intervals> = answers.by_ref().take(light.lanes.len()).collect();
+            let lists = filled.get(&place).unwrap_or(&own);
+            let loss = encoders.set(sample.texel as usize, lists, account);
             if let Some(map) = &mut self.loss_map {
                 map.add(sample.texel as usize, &loss, light.duration_min);
             }
             account.loss.add(loss, [page as u32, sample.texel % size.width, sample.texel / size.width]);
         }
-        for copy in atlas::gutter(size, samples, self.settings.padding_texels) {
+        for copy in gutter {
             encoders.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
         }
         self.stats.seconds.encode += started.elapsed().as_secs_f64();

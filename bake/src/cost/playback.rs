@@ -22,17 +22,18 @@ pub(super) struct PlaybackErrors {
     pub ambient: Option<Vec<f64>>,
 }
 
-/// Four texels of a page and their weights.
-pub(super) type WeightedTexels = [(usize, f32); 4];
-
 /// Compares a set with the truth; `of` is the scene that the points lie on.
 pub(super) fn errors(set: &BakedSet, truth: &GroundTruth, of: &Scene) -> Result<PlaybackErrors, CostError> {
     let scene = set.scene(&LoadLimits::default())?;
     let geometry = Geometry::new(&scene);
     let atlas = set.manifest.atlas(&scene);
     check(truth, of, &scene, &geometry)?;
-    let blends: Vec<(usize, WeightedTexels)> =
-        truth.points.iter().map(|place| blend(place, &scene, &geometry, &atlas)).collect();
+    let blend_at = |place| {
+        let (page, footprint) = blend(place, &scene, &geometry, &atlas);
+        let walls = set.pages[page].walls.as_ref();
+        (page, walls.map_or(footprint, |codes| footprint.beside_walls(codes)))
+    };
+    let blends: Vec<(usize, Footprint)> = truth.points.iter().map(blend_at).collect();
     let shown = PlayedMaps { pages: &set.pages, bits: set.bits, path: set.path.as_ref() };
     Ok(shown.errors(truth, &blends))
 }
@@ -47,7 +48,7 @@ pub(super) struct PlayedMaps<'a> {
 
 impl PlayedMaps<'_> {
     /// Errors at points; of each point, its page and the texels that it reads.
-    pub fn errors(&self, truth: &GroundTruth, blends: &[(usize, WeightedTexels)]) -> PlaybackErrors {
+    pub fn errors(&self, truth: &GroundTruth, blends: &[(usize, Footprint)]) -> PlaybackErrors {
         let read_points = || truth.points.par_iter().zip(blends);
         let sun_t = read_points().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
             let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend));
@@ -61,7 +62,7 @@ impl PlayedMaps<'_> {
     }
 
     /// Visible share of the disc at the point's moments.
-    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &WeightedTexels) -> Vec<f32> {
+    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &Footprint) -> Vec<f32> {
         let inverse_angular_diameter = 0.5 / path.angular_radius_rad.max(1e-9);
         let geometric_normal = place.geometric_normal();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
@@ -78,7 +79,7 @@ impl PlayedMaps<'_> {
                 };
                 page.lanes.iter().zip(&chords).map(of_lane).sum()
             };
-            share.min(blend.iter().map(|&(texel, weight)| weight * of_texel(texel)).sum())
+            share.min(blend.blend(of_texel))
         };
         metric::moments(place.start).map(at).collect()
     }
@@ -104,12 +105,7 @@ fn check(truth: &GroundTruth, of: &Scene, scene: &Scene, geometry: &Geometry) ->
 }
 
 /// The page of a point, and the texels around it with their weights.
-pub(super) fn blend(
-    place: &SurfaceSample,
-    scene: &Scene,
-    geometry: &Geometry,
-    atlas: &Atlas,
-) -> (usize, WeightedTexels) {
+pub(super) fn blend(place: &SurfaceSample, scene: &Scene, geometry: &Geometry, atlas: &Atlas) -> (usize, Footprint) {
     let surface = geometry.surface(place.surface.triangle as usize);
     let page = atlas.placements[surface.instance].page as usize;
     let size = atlas.pages[page];
@@ -120,14 +116,12 @@ pub(super) fn blend(
     };
     let [u, v] = place.barycentric;
     let at = corner(0) * (1.0 - u - v) + corner(1) * u + corner(2) * v;
-    let footprint = Footprint::new(at - 0.5, size);
-    let weights = footprint.weights_f32();
-    (page, std::array::from_fn(|k| (footprint.texels[k], weights[k])))
+    (page, Footprint::new(at - 0.5, size))
 }
 
 /// Ambient visibility that the set shows at a point.
-fn played_ambient(page: &PageMaps, place: &SurfaceSample, blend: &WeightedTexels) -> Option<f32> {
+fn played_ambient(page: &PageMaps, place: &SurfaceSample, blend: &Footprint) -> Option<f32> {
     let ambient = page.ambient.as_ref()?;
     let side = ambient.back.as_ref().filter(|_| place.is_back).unwrap_or(&ambient.front);
-    Some(blend.iter().map(|&(texel, weight)| weight * decode_share(side.visibility[texel])).sum())
+    Some(blend.blend(|texel| decode_share(side.visibility[texel])))
 }

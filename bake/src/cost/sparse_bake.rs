@@ -7,11 +7,11 @@
 //! page. Seconds are a prediction. Only the bytes on the GPU are known, from the layers that these texels need.
 
 use super::budget::Budget;
-use super::playback::{self, PlaybackErrors, PlayedMaps, WeightedTexels};
+use super::playback::{self, PlaybackErrors, PlayedMaps};
 use super::truth::{self, GroundTruth};
 use super::workload::Workload;
 use crate::ambient::AmbientPoint;
-use crate::atlas::{self, Atlas, GutterTexel, PageSamples, Sample, SurfacePoint};
+use crate::atlas::{self, Atlas, Footprint, GutterTexel, OPEN, PageSamples, Sample, SurfacePoint, WallFinder};
 use crate::bake::fitting_atlas;
 use crate::maps::{AmbientMaps, AmbientSide, Bits, LaneMaps, PageEncoder, PageMaps, encode_share};
 use crate::progress::Progress;
@@ -51,31 +51,34 @@ pub(super) fn sparse_bake(
 struct SparseTexels {
     /// Texels that are baked, each once.
     samples: Vec<Sample>,
-    /// For each point, indices in `samples`, or `samples.len()` for texels that are not covered.
-    blends: Vec<WeightedTexels>,
+    /// For each point, the texels around it: indices in `samples`, or `samples.len()` for those that are not covered.
+    blends: Vec<Footprint>,
     texels: u64,
 }
 
 impl SparseTexels {
     fn new(workload: &Workload, truth: &GroundTruth, atlas: &Atlas, padding: u32) -> Self {
         let (scene, geometry) = (workload.scene(), &workload.geometry);
-        let of_pages: Vec<(usize, WeightedTexels)> =
+        let finder = WallFinder::new(scene, geometry, atlas, &workload.tracer);
+        let of_pages: Vec<(usize, Footprint)> =
             truth.points.iter().map(|place| playback::blend(place, scene, geometry, atlas)).collect();
-        let mut read = Self { samples: Vec::new(), blends: vec![WeightedTexels::default(); of_pages.len()], texels: 0 };
+        let mut read = Self { samples: Vec::new(), blends: vec![Footprint::default(); of_pages.len()], texels: 0 };
         // Texels that are not covered, until it is known how many are.
         const UNCOVERED: usize = usize::MAX;
         for (page, &size) in atlas.pages.iter().enumerate() {
             let samples = atlas::sample_page(scene, geometry, atlas, page as u32);
             read.texels += samples.samples.len() as u64;
             let on_page = of_pages.iter().enumerate().filter(|(_, (of, _))| *of == page);
-            let texels = on_page.clone().flat_map(|(_, (_, blend))| blend.iter().map(|(texel, _)| *texel));
+            let texels = on_page.clone().flat_map(|(_, (_, blend))| blend.texels);
             let found = read.add(&texels.collect(), &samples, &atlas::gutter(size, &samples, padding));
             for (point, (_, blend)) in on_page {
-                read.blends[point] = blend.map(|(texel, weight)| (*found.get(&texel).unwrap_or(&UNCOVERED), weight));
+                let texels = blend.texels.map(|texel| *found.get(&texel).unwrap_or(&UNCOVERED));
+                let codes = finder.codes(texels.map(|texel| read.samples.get(texel)));
+                read.blends[point] = Footprint { texels, ..blend.among(codes) };
             }
         }
         let beyond = read.samples.len();
-        read.blends.iter_mut().flatten().for_each(|(place, _)| *place = (*place).min(beyond));
+        read.blends.iter_mut().flat_map(|blend| &mut blend.texels).for_each(|place| *place = (*place).min(beyond));
         read
     }
 
@@ -109,11 +112,13 @@ impl SparseTexels {
             None => None,
         };
         // A page one texel high, with one uncovered texel at the end.
-        let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient };
+        let has_walls = self.blends.iter().any(|blend| blend.reach.is_some());
+        let walls = has_walls.then(|| vec![[OPEN; 2]; self.samples.len() + 1]);
+        let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient, walls };
         let gpu_bytes = page.gpu_bytes(settings.bits) / u64::from(page.width) * page_texels;
         let played =
             PlayedMaps { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };
-        let blends: Vec<(usize, WeightedTexels)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
+        let blends: Vec<(usize, Footprint)> = self.blends.into_iter().map(|blend| (0, blend)).collect();
         let errors = workload.on_threads(|| played.errors(truth, &blends));
         Some(SparseBake { errors, gpu_bytes, texels: self.texels })
     }

@@ -2,12 +2,12 @@
 
 use super::budget::Budget;
 use super::metric::disc_visibility;
-use super::playback::{self, PlayedMaps, WeightedTexels};
+use super::playback::{self, PlayedMaps};
 use super::settings::CostSettings;
 use super::sparse_bake::sparse_bake;
 use super::truth::{GroundTruth, SurfaceSample};
 use super::workload::Workload;
-use crate::atlas::{self, AtlasSettings, SurfacePoint};
+use crate::atlas::{self, AtlasSettings, Footprint, SurfacePoint};
 use crate::maps::{Bits, Lane, LaneMaps, PageEncoder, PageMaps};
 use crate::progress::Silent;
 use crate::scene::Scene;
@@ -16,7 +16,7 @@ use crate::sun::{DayOutcome, DayRequest, SunPath, day};
 use crate::testing::{SceneBuilder, block, floor};
 use crate::visibility::Intervals;
 use crate::{bake, disk, glb};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use std::path::{Path, PathBuf};
 
 fn summer() -> DayRequest {
@@ -43,8 +43,8 @@ fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
         encoder.set(texel, &Intervals::from_unsorted(lit.to_vec()));
     }
     let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
-    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None };
-    let blend: WeightedTexels = [0, 1, 2, 3].map(|texel| (texel, 0.25));
+    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None, walls: None };
+    let blend = Footprint { texels: [0, 1, 2, 3], fraction: DVec2::splat(0.5), reach: None };
     let played = PlayedMaps { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
     played.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min
 }

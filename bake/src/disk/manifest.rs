@@ -170,6 +170,11 @@ pub struct AtlasEntry {
     /// The lamp's times; present on every page of a set with a lamp.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampMapsEntry>,
+    /// What stands between neighbouring texels, where anything does: a PNG of grey (the way to the right neighbour) and
+    /// alpha (to the lower). 255: nothing. Else the first surface's distance from this texel in sixteenths of the way
+    /// (upper four bits) and from the neighbour (lower four bits).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walls: Option<String>,
     /// Ambient visibility, 0 is occluded: a grey PNG; or, if some texel has two sides, an RGB PNG with the front in
     /// green, the back in blue and, for viewers, the greater of the two in red.
     pub ao: Option<String>,
@@ -357,6 +362,9 @@ pub struct Stats {
     /// Texels that never see the sun, along any lane.
     #[serde(default)]
     pub dark_texels: u64,
+    /// Buried texels that show the times that their visible neighbours agree on.
+    #[serde(default)]
+    pub filled_texels: u64,
     /// Most lit intervals of any texel along one lane.
     pub most_intervals: u64,
     /// Engine and its parameters, as given on the command line.

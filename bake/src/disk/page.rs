@@ -19,7 +19,7 @@ pub struct BakedPage {
 impl BakedPage {
     /// The page's entry in the manifest: its size, and its files' names as page `index` of a set.
     pub fn entry(&self, index: usize) -> AtlasEntry {
-        let PageMaps { width, height, lanes, lamp, ambient } = &self.maps;
+        let PageMaps { width, height, lanes, lamp, ambient, walls } = &self.maps;
         let lane = |(k, LaneMaps { lane, layers }): (usize, &LaneMaps)| LaneEntry {
             offset_deg: lane.offset_rad.to_degrees(),
             weight: lane.weight,
@@ -32,6 +32,7 @@ impl BakedPage {
             lamp: lamp
                 .as_ref()
                 .map(|layers| LampMapsEntry { layers: layer_entries(&format!("page{index}_lamp"), layers) }),
+            walls: walls.as_ref().map(|_| format!("page{index}_walls.png")),
             loss_map: self.loss_map.as_ref().map(|map| loss_map_entry(index, map)),
             ..AtlasEntry::default()
         };

@@ -129,7 +129,9 @@ fn check_names(manifest: &Manifest) -> Result<(), String> {
     let mut names = vec![&manifest.scene.file];
     names.extend(manifest.ambient.iter().flat_map(|ambient| &ambient.vertices).map(|vertices| &vertices.file));
     for atlas in &manifest.atlases {
-        names.extend(atlas.ao.iter().chain(&atlas.bent).chain(&atlas.bent_back).chain(&atlas.ambient_exr));
+        names.extend(
+            atlas.walls.iter().chain(&atlas.ao).chain(&atlas.bent).chain(&atlas.bent_back).chain(&atlas.ambient_exr),
+        );
         names.extend(atlas.sky.iter().flat_map(|sky| sky.front.iter().chain(sky.back.iter().flatten())));
         names.extend(atlas.loss_map.iter().flat_map(|map| [&map.picture, &map.numbers]));
         let layers = atlas.lanes.iter().flat_map(|lane| &lane.layers);
@@ -181,7 +183,8 @@ fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, 
     }
     let lamp = atlas.lamp.as_ref().map(|lamp| read_layers(folder, &lamp.layers, size, bits)).transpose()?;
     let ambient = read_ambient(folder, atlas, size)?;
-    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ambient })
+    let walls = atlas.walls.as_ref().map(|name| read_walls(&folder.join(name), size)).transpose()?;
+    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ambient, walls })
 }
 
 fn read_ambient(folder: &Path, atlas: &AtlasEntry, size: (u32, u32)) -> Result<Option<AmbientMaps>, ReadError> {
@@ -254,6 +257,16 @@ fn read_occlusion(path: &Path, size: (u32, u32)) -> Result<[Option<Vec<u16>>; 2]
     }
     let texels = image.into_rgb16();
     Ok([1, 2].map(|channel| Some(texels.pixels().map(|texel| texel.0[channel]).collect())))
+}
+
+fn read_walls(path: &Path, size: (u32, u32)) -> Result<Vec<[u8; 2]>, ReadError> {
+    match decode(path, size)? {
+        image::DynamicImage::ImageLumaA8(image) => Ok(image.pixels().map(|texel| texel.0).collect()),
+        image => {
+            let reason = format!("its texels are {:?}, not grey and alpha of 8 bits", image.color());
+            Err(ReadError::Texture { path: path.to_owned(), reason })
+        }
+    }
 }
 
 fn read_rgb16(path: &Path, size: (u32, u32)) -> Result<Vec<[u16; 3]>, ReadError> {

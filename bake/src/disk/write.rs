@@ -61,6 +61,12 @@ impl SetWriter {
             textures.par_iter().map(|(name, codes)| self.write_texture(name, codes, size, bits.times)).collect();
         self.bytes += written?.iter().sum::<u64>();
         self.write_ambient(entry, page, bits.ambient)?;
+        if let (Some(name), Some(codes)) = (&entry.walls, &page.maps.walls) {
+            let write = |file: &mut BufWriter<File>| {
+                write_png(codes.as_flattened(), png::ColorType::GrayscaleAlpha, size, Bits::Eight, file)
+            };
+            self.write_file(name, write)?;
+        }
         if let (Some(names), Some(map)) = (&entry.loss_map, &page.loss_map) {
             self.write_loss_map(names, map)?;
         }
@@ -118,7 +124,7 @@ mod tests {
         let mut of_lamp = layer.clone();
         of_lamp.rise[2] = [7; 4];
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![layer.clone(), layer] }];
-        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None }
+        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None, walls: None }
     }
 
     fn manifest(atlas: AtlasEntry, bits: Bits) -> Manifest {

@@ -6,7 +6,7 @@ use super::binary::Binary;
 use super::nodes::remove_extension;
 use super::references::{self, DRACO, items};
 use super::streams::{Split, Stream};
-use super::{WrittenPlace, index, list, materials};
+use super::{WrittenPlace, counted, index, list, materials};
 use crate::scene::{Mesh, PackedElements, Scene, SceneFile};
 use crate::settings::VertexAttribute;
 use glam::{Vec2, Vec4};
@@ -219,7 +219,7 @@ impl Writer<'_, '_> {
         self.split(key, primitive);
         let object = primitive.as_object_mut();
         if object.is_some_and(|object| remove_extension(object, DRACO)) {
-            *self.not_kept.entry(format!("{DRACO}: uncompressed")).or_default() += 1;
+            *self.not_kept.entry(format!("{DRACO} is gone")).or_default() += 1;
         }
         match self.additions {
             Additions::Coordinates { .. } => self.add_coordinates(key, part, primitive, root),
@@ -247,7 +247,7 @@ impl Writer<'_, '_> {
         primitive["indices"] = json!(indices);
         if index(primitive, "mode").is_some_and(|mode| mode != TRIANGLES) {
             primitive["mode"] = json!(TRIANGLES);
-            *self.not_kept.entry("strips and fans: lists of triangles instead".into()).or_default() += 1;
+            *self.not_kept.entry("strips and fans are lists of triangles".into()).or_default() += 1;
         }
     }
 
@@ -311,7 +311,7 @@ impl Writer<'_, '_> {
     }
 
     fn notes(self) -> Vec<String> {
-        self.not_kept.into_iter().map(|(what, count)| format!("of {count} primitives, {what}")).collect()
+        self.not_kept.into_iter().map(|(what, count)| format!("{what}, of {}", counted(count, "primitive"))).collect()
     }
 }
 
@@ -345,7 +345,7 @@ fn rewrite(
             let old = accessor.as_u64()? as usize;
             let new = *known.entry(old).or_insert_with(|| copy_elements(file, binary, split, old));
             if new.is_none() {
-                *not_kept.entry(format!("{name}, which cannot be read")).or_default() += 1;
+                *not_kept.entry(format!("{name} cannot be read, and is gone")).or_default() += 1;
             }
             Some((name.clone(), json!(new?)))
         };

@@ -132,6 +132,11 @@ fn list<'a>(root: &'a mut Value, name: &str) -> &'a mut Vec<Value> {
     root[name].as_array_mut().expect("it is an array")
 }
 
+/// A number of things: `1 node`, `2 nodes`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 /// An index in a JSON object.
 fn index(value: &Value, key: &str) -> Option<usize> {
     Some(value.get(key)?.as_u64()? as usize)

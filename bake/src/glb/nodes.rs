@@ -1,6 +1,6 @@
 //! Nodes: those of the file, and new ones for the copies of a mesh that `EXT_mesh_gpu_instancing` gives to one node.
 
-use super::{list, made};
+use super::{counted, list, made};
 use crate::scene::{GPU_INSTANCING, Scene};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub(super) fn expand_copies(scene: &Scene, root: &mut Value) -> (Vec<usize>, Vec
         remove_extension(object, GPU_INSTANCING);
         nodes.extend(added);
     }
-    let note = format!("{GPU_INSTANCING} of {} nodes: their copies are nodes of their own", copies.len());
+    let note = format!("copies by {GPU_INSTANCING} are nodes of their own, of {}", counted(copies.len(), "node"));
     (written, (!copies.is_empty()).then_some(note).into_iter().collect())
 }
 

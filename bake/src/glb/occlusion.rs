@@ -5,7 +5,7 @@
 
 use super::binary::Binary;
 use super::meshes::Written;
-use super::{list, materials, references};
+use super::{counted, list, materials, references};
 use crate::atlas::{Atlas, PageSize};
 use crate::maps::{AmbientMaps, in_8_bits};
 use crate::scene::Scene;
@@ -94,7 +94,8 @@ impl Occlusion<'_> {
         }
         *list(root, "materials") = all;
         if replaced > 0 {
-            not_kept.push(format!("the occlusion textures of {replaced} materials: the bake's are in their place"));
+            let materials = counted(replaced, "material");
+            not_kept.push(format!("the bake's ambient occlusion replaces the occlusion textures of {materials}"));
         }
     }
 

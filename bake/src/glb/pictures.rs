@@ -14,7 +14,7 @@ pub(super) fn embed(file: &SceneFile, root: &mut Value, binary: &mut Binary, not
         let Some(object) = image.as_object_mut() else { continue };
         match file.picture(index) {
             None => {}
-            Some(Err(error)) => not_kept.push(format!("images[{index}] is named and not there ({error})")),
+            Some(Err(error)) => not_kept.push(format!("a picture that no shadow needs is still a link: {error}")),
             Some(Ok(bytes)) => {
                 let mime_type = mime_type(bytes).map(Value::from).or_else(|| object.get("mimeType").cloned());
                 let Some(mime_type) = mime_type else { continue };

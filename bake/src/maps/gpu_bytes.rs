@@ -38,6 +38,8 @@ pub struct GpuTexel {
     pub ambient: AmbientTextures,
     /// Sides that ambient light is stored for: 1 or 2.
     pub sides: u32,
+    /// Whether there is a texture of walls.
+    pub walls: bool,
 }
 
 impl GpuTexel {
@@ -51,7 +53,7 @@ impl GpuTexel {
             AmbientTextures::Bent => 2 + 8,
             AmbientTextures::Sky => 3 * 8,
         };
-        times + ambient_side * u64::from(self.sides)
+        times + ambient_side * u64::from(self.sides) + if self.walls { 2 } else { 0 }
     }
 }
 
@@ -66,6 +68,7 @@ impl PageMaps {
             bits: bits.count(),
             ambient: AmbientTextures::of(self),
             sides: if has_backs { 2 } else { 1 },
+            walls: self.walls.is_some(),
         }
     }
 

@@ -114,6 +114,9 @@ pub struct PageMaps {
     pub lamp: Option<Vec<LayerMaps>>,
     /// How much of the sky texels see, where the set has it.
     pub ambient: Option<AmbientMaps>,
+    /// What stands on the ways from each texel to its right and its lower neighbour ([`crate::atlas::wall_code`]),
+    /// where anything does.
+    pub walls: Option<Vec<[u8; 2]>>,
 }
 
 /// Lengths of the encoded intervals of a texel, for tests and for `sunbake texels`: what is stored, as times.

@@ -39,7 +39,7 @@ mod tests {
             encoder.set(texel, &Intervals::from_unsorted(list.clone()));
         }
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
-        PageMaps { width: lists.len() as u32, height: 1, lanes, lamp: None, ambient: None }
+        PageMaps { width: lists.len() as u32, height: 1, lanes, lamp: None, ambient: None, walls: None }
     }
 
     #[test]

@@ -41,6 +41,8 @@ pub enum Effect {
     AlphaMask,
     /// Surfaces that are lit from both sides.
     DoubleSided,
+    /// Walls between neighbouring texels, which filters must not blend across.
+    Walls,
     /// Share of the sky that texels see.
     AmbientOcclusion,
     /// Nothing beyond a distance hides the sky.
@@ -69,6 +71,7 @@ impl Effect {
             // Sets are read by this name: the word is older than the variant's.
             Self::AlphaMask => "alpha-cut",
             Self::DoubleSided => "double-sided",
+            Self::Walls => "walls",
             Self::AmbientOcclusion => "ambient-occlusion",
             Self::AmbientDistance => "ambient-distance",
             Self::BentNormals => "bent-normals",
@@ -157,6 +160,11 @@ pub enum Facts {
         /// Number of triangles of these surfaces.
         triangles: usize,
     },
+    /// Walls between neighbouring texels.
+    Walls {
+        /// Pages with walls, of how many; known after the bake.
+        pages: Option<[usize; 2]>,
+    },
     /// Ambient light, if it is asked for.
     Ambient(Option<AmbientRequest>),
 }
@@ -218,11 +226,15 @@ impl EffectPlan {
         self.decisions.iter().any(|d| d.effect == effect && d.is_on)
     }
 
-    /// The plan corrected by how many layers texels turned out to need.
-    pub fn after_bake(mut self, found: LayersNeeded) -> Self {
+    /// The plan corrected by how many layers texels turned out to need, and how many of all pages have walls.
+    pub fn after_bake(mut self, found: LayersNeeded, walled: [usize; 2]) -> Self {
         for decision in &mut self.decisions {
-            if let Facts::Layers { has_times: true, needed, .. } = &mut decision.facts {
-                (*needed, decision.is_on) = (Some(found), found.layers > 1);
+            match &mut decision.facts {
+                Facts::Layers { has_times: true, needed, .. } => {
+                    (*needed, decision.is_on) = (Some(found), found.layers > 1);
+                }
+                Facts::Walls { pages } => (*pages, decision.is_on) = (Some(walled), walled[0] > 0),
+                _ => {}
             }
         }
         self

@@ -4,12 +4,13 @@ use super::{Decision, Effect, Facts};
 use crate::scene::{Alpha, Material, Scene};
 
 /// What the scene's materials call for.
-pub(super) fn decisions(scene: &Scene) -> [Decision; 2] {
+pub(super) fn decisions(scene: &Scene) -> [Decision; 3] {
     [
         of_surfaces(scene, Effect::AlphaMask, |material| matches!(material.alpha, Alpha::Mask { .. })),
         of_surfaces(scene, Effect::DoubleSided, |material| {
             material.is_double_sided && material.alpha != Alpha::Invisible
         }),
+        Decision { effect: Effect::Walls, is_on: !scene.instances.is_empty(), facts: Facts::Walls { pages: None } },
     ]
 }
 

@@ -46,6 +46,11 @@ fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
             format!("{surfaces} drawn surfaces have an alpha mask")
         }
         Facts::Surfaces { surfaces, .. } => format!("{surfaces} drawn surfaces are double-sided"),
+        Facts::Walls { pages: None } => "wherever a wall stands between neighbouring texels".into(),
+        Facts::Walls { pages: Some([0, all]) } => format!("no wall stands between texels of {all} pages"),
+        Facts::Walls { pages: Some([walled, all]) } => {
+            format!("walls stand between neighbouring texels of {walled} of {all} pages")
+        }
         Facts::Ambient(None) => "--only asks for no ao".into(),
         Facts::Ambient(Some(request)) if is_on => why_ambient(effect, &request),
         Facts::Ambient(Some(_)) => why_no_ambient(effect).into(),
@@ -146,6 +151,7 @@ fn cost(effect: Effect, is_on: bool, facts: Facts) -> String {
             "times serve both sides; ambient light takes rays and bytes for a second side{}",
             if triangles > 0 { format!(" of {triangles} triangles") } else { String::new() }
         ),
+        Facts::Walls { .. } => "two rays a texel, twelve where something is in the way, and 2 bytes".into(),
         Facts::Ambient(request) => ambient_cost(effect, request.as_ref()),
     }
 }
@@ -221,6 +227,8 @@ fn toggled_by(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Losses { is_asked: true, .. } => "leaving --loss-map out",
         Facts::Losses { is_asked: false, .. } => "--loss-map",
         Facts::Surfaces { surfaces, .. } => return surface_toggle(effect, surfaces).into(),
+        Facts::Walls { .. } if is_on => "a scene without walls higher than a texel is wide",
+        Facts::Walls { .. } => "walls on floors that run on behind them",
         Facts::Ambient(request) => return ambient_toggle(effect, is_on, request.is_some()),
     }
     .into()

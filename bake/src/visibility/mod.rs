@@ -6,6 +6,7 @@
 //! runtime knows which.
 
 mod bisect;
+mod buried;
 mod exact;
 mod lamp;
 mod probe;
@@ -13,6 +14,7 @@ mod rays;
 
 pub use crate::intervals::{IntervalTable, Intervals};
 pub use bisect::BisectEngine;
+pub(crate) use buried::{Answers, BuriedPoints, fill_buried};
 pub use exact::ExactEngine;
 pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;

@@ -19,6 +19,8 @@ pub struct Census {
     pub lamp_bindings: usize,
     /// Textures of ambient light.
     pub ambient_textures: usize,
+    /// Textures of what stands between texels.
+    pub wall_textures: usize,
     /// Bindings of the sky in spherical harmonics: one where a page wants it.
     pub sky_bindings: usize,
     /// Number of base colour textures.
@@ -53,9 +55,9 @@ pub struct Census {
 
 impl Census {
     /// How many counts there are.
-    pub(super) const COUNTS: usize = 22;
+    pub(super) const COUNTS: usize = 23;
     /// Which of them are bytes.
-    pub(super) const BYTES: [usize; 3] = [14, 17, 21];
+    pub(super) const BYTES: [usize; 3] = [15, 18, 22];
 
     pub(super) fn counts(&self) -> [u64; Self::COUNTS] {
         [
@@ -66,6 +68,7 @@ impl Census {
             self.time_textures as u64,
             self.lamp_bindings as u64,
             self.ambient_textures as u64,
+            self.wall_textures as u64,
             self.sky_bindings as u64,
             self.base_color_textures as u64,
             self.vertex_buffers as u64,
@@ -85,7 +88,8 @@ impl Census {
     }
 
     fn of_counts(counts: [u64; Self::COUNTS]) -> Self {
-        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, map_bytes, o, p, volume_bytes, q, r, s, shadow_bytes] = counts;
+        let [a, b, c, d, e, f, g, walls, h, i, j, k, l, m, n, map_bytes, o, p, volume_bytes, q, r, s, shadow_bytes] =
+            counts;
         Self {
             passes: a as usize,
             pipelines: b as usize,
@@ -94,6 +98,7 @@ impl Census {
             time_textures: e as usize,
             lamp_bindings: f as usize,
             ambient_textures: g as usize,
+            wall_textures: walls as usize,
             sky_bindings: h as usize,
             base_color_textures: i as usize,
             vertex_buffers: j as usize,

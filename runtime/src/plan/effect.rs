@@ -37,6 +37,8 @@ pub enum DrawEffect {
     SkyHarmonics,
     /// Ambient light of the backs of surfaces.
     AmbientOfBacks,
+    /// Filters that blend nothing across walls.
+    Walls,
     /// More than one atlas page.
     SeveralPages,
     /// Shadow volumes of the sun.

@@ -83,7 +83,7 @@ impl Stage {
     pub fn plain(scene: Scene, path: Option<SunPath>) -> Self {
         let chart = Chart { page: 0, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
         let charts = vec![Some(chart); scene.instances.len()];
-        let page = PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None };
+        let page = PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None, walls: None };
         Self::with_charts(scene, charts, vec![page], Bits::Eight, path)
     }
 

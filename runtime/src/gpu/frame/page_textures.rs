@@ -16,6 +16,8 @@ pub struct PageTextures {
     pub time_textures: usize,
     /// Textures of ambient light.
     pub ambient_textures: usize,
+    /// Textures of what stands between texels.
+    pub wall_textures: usize,
     /// Bytes of all of its textures.
     pub bytes: u64,
 }
@@ -38,6 +40,11 @@ impl PageTextures {
             let [rise, fall] = times(gpu, maps, bits, &lamp.iter().collect::<Vec<_>>())?;
             textures.extend([(3, rise), (4, fall)]);
         }
+        let ambient_and_times = textures.len();
+        if let Some(walls) = maps.walls.as_ref().filter(|_| variant.has_walls && variant.reads_texels()) {
+            let slice = walls.as_flattened().to_vec();
+            textures.push((7, slices_texture(gpu, maps, "walls", wgpu::TextureFormat::Rg8Uint, &[slice])));
+        }
         let time_textures = textures.iter().filter(|(binding, _)| [0, 1, 3, 4].contains(binding)).count();
         let (layout, bind_group) = bound(gpu, &textures).unzip();
         Ok(Self {
@@ -45,7 +52,8 @@ impl PageTextures {
             bind_group,
             binding_count: textures.len(),
             time_textures,
-            ambient_textures: textures.len() - time_textures,
+            ambient_textures: ambient_and_times - time_textures,
+            wall_textures: textures.len() - ambient_and_times,
             bytes: textures.iter().map(|(_, texture)| texture_bytes(texture)).sum(),
         })
     }
@@ -162,7 +170,7 @@ fn slices_texture(
 ) -> wgpu::Texture {
     let size = [maps.width, maps.height];
     let texture = texture(gpu, label, size, slices.len() as u32, format, FILLED_AND_READ);
-    let texel_bytes = if format == wgpu::TextureFormat::R16Uint { 2 } else { 8 };
+    let texel_bytes = format.block_copy_size(None).unwrap_or(0);
     for (slice, bytes) in slices.iter().enumerate() {
         upload(gpu, &texture, 0, slice as u32, size, texel_bytes, bytes);
     }

@@ -86,6 +86,7 @@ impl SceneOnGpu {
             time_textures: self.pages.iter().map(|page| page.time_textures).sum(),
             lamp_bindings: usize::from(self.frame.lamp.is_some()),
             ambient_textures: self.pages.iter().map(|page| page.ambient_textures).sum(),
+            wall_textures: self.pages.iter().map(|page| page.wall_textures).sum(),
             sky_bindings: usize::from(self.frame.sky.is_some()),
             base_color_textures: self.textures.texture_count,
             vertex_buffers: self.streams.len(),

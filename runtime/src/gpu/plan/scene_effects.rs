@@ -26,7 +26,12 @@ impl SceneEffects<'_> {
     /// Decisions about every effect of the scene itself.
     pub fn all(&self) -> Vec<DrawNeed> {
         let surfaces = [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided()];
-        surfaces.into_iter().chain(self.of_times()).chain(self.of_ambient()).chain([self.pages()]).collect()
+        surfaces
+            .into_iter()
+            .chain(self.of_times())
+            .chain(self.of_ambient())
+            .chain([self.walls(), self.pages()])
+            .collect()
     }
 
     /// What a change to the scene would save.
@@ -144,6 +149,13 @@ impl SceneEffects<'_> {
             need(DrawEffect::SkyHarmonics, has(Sky).then(|| instead(&[Sky], Hemisphere))),
             need(DrawEffect::AmbientOfBacks, has_backs.then(|| self.saved_on_pages(|page| page.has_backs = false))),
         ]
+    }
+
+    fn walls(&self) -> DrawNeed {
+        let has_walls = self.scene.pages.iter().any(|page| page.variant.has_walls);
+        let is_read = self.scene.pages.iter().any(|page| page.variant.has_walls && page.variant.reads_texels());
+        let saved = is_read.then(|| self.saved_on_pages(|page| page.has_walls = false));
+        DrawNeed::new(DrawEffect::Walls, saved, if has_walls && !is_read { Reason::Unread } else { Reason::Usual })
     }
 
     fn pages(&self) -> DrawNeed {

@@ -105,6 +105,7 @@ impl SceneNeeds {
             time_textures: self.pages.iter().map(PageNeeds::time_textures).sum(),
             lamp_bindings: usize::from(self.has_lamp),
             ambient_textures: self.pages.iter().map(PageNeeds::ambient_textures).sum(),
+            wall_textures: self.pages.iter().map(PageNeeds::wall_textures).sum(),
             sky_bindings: usize::from(self.has_sky()),
             base_color_textures: images.len(),
             vertex_buffers: self.streams().len(),
@@ -132,7 +133,11 @@ impl PageNeeds {
 
     /// Each texture is one binding.
     fn binding_count(&self) -> usize {
-        self.time_textures() + self.ambient_textures()
+        self.time_textures() + self.ambient_textures() + self.wall_textures()
+    }
+
+    fn wall_textures(&self) -> usize {
+        usize::from(self.variant.has_walls && self.variant.reads_texels())
     }
 
     fn bytes(&self, bits: u32) -> u64 {
@@ -147,6 +152,7 @@ impl PageNeeds {
                 AmbientModel::Sky => AmbientTextures::Sky,
             },
             sides: if variant.has_backs { 2 } else { 1 },
+            walls: self.wall_textures() > 0,
         };
         self.texels * texel.bytes()
     }

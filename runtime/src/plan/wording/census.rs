@@ -11,6 +11,7 @@ const COUNTED: [[&str; 2]; Census::COUNTS] = [
     ["texture of times", "textures of times"],
     ["", ""],
     ["texture of ambient light", "textures of ambient light"],
+    ["texture of walls", "textures of walls"],
     ["", ""],
     ["base colour texture", "base colour textures"],
     ["vertex buffer", "vertex buffers"],

@@ -43,7 +43,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 37] = [
+pub const TEXTS: [EffectText; 38] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -195,6 +195,16 @@ pub const TEXTS: [EffectText; 37] = [
         would_take: "twice the bytes of ambient light",
         off_by: "--ambient hemisphere",
         on_by: "ambient light of a set with double-sided surfaces",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::Walls,
+        name: "walls",
+        why_on: "walls stand between neighbouring texels, and no filter blends across them",
+        why_off: "nothing stands between neighbouring texels, or they are not read",
+        would_take: "a texture and a binding a page, 2 bytes a texel; three reads a filter",
+        off_by: "a set without `walls` in its sunbake.json",
+        on_by: "a set of a scene with walls, higher than a texel is wide, on floors that run on behind them",
         ..NONE
     },
     EffectText {

@@ -21,7 +21,9 @@ fn sky_light_at(texel: vec2<i32>, side: i32) -> vec3<f32> {
 
 fn ambient_light(page_uv: vec2<f32>, normal: vec3<f32>, side: i32) -> vec3<f32> {
     let at = footprint(page_uv, textureDimensions(sky_map));
-    let top = mix(sky_light_at(texel_of(at, 0), side), sky_light_at(texel_of(at, 1), side), at.weight.x);
-    let bottom = mix(sky_light_at(texel_of(at, 2), side), sky_light_at(texel_of(at, 3), side), at.weight.x);
-    return max(mix(top, bottom, at.weight.y), vec3<f32>(0.0));
+    let upper_left = sky_light_at(texel_of(at, 0), side);
+    let upper_right = sky_light_at(texel_of(at, 1), side);
+    let lower_left = sky_light_at(texel_of(at, 2), side);
+    let lower_right = sky_light_at(texel_of(at, 3), side);
+    return max(blended_colors(at, upper_left, upper_right, lower_left, lower_right), vec3<f32>(0.0));
 }

@@ -20,13 +20,6 @@ fn texel_of(at: Footprint, k: i32) -> vec2<i32> {
     return vec2<i32>(select(at.low.x, at.high.x, (k & 1) == 1), select(at.low.y, at.high.y, k >= 2));
 }
 
-// Four values blended, in the same order.
-fn blended(at: Footprint, values: vec4<f32>) -> f32 {
-    let top = mix(values.x, values.y, at.weight.x);
-    let bottom = mix(values.z, values.w, at.weight.x);
-    return mix(top, bottom, at.weight.y);
-}
-
 // The texel that holds a page coordinate.
 fn texel_at(page_uv: vec2<f32>, size: vec2<u32>) -> vec2<i32> {
     let last = vec2<i32>(size) - 1;

@@ -1,0 +1,278 @@
+//! Filtering beside walls: of the four texels around a point, those count that lie on the point's own side.
+//!
+//! Theory: a bilinear filter blends texels inside a room with texels outside, where the floor runs on under the wall.
+//! What stands between two neighbouring texels is known to the baker ([`super::walls`]), so a filter can leave out
+//! texels that the point does not reach.
+//!
+//! Practice: a *wall code* says what stands on the way from a texel's point to its neighbour's: nothing ([`OPEN`]), or
+//! where the first surface stands as seen from either end, in sixteenths of the way, rounded towards that end. What
+//! lies between the two surfaces is the wall itself, and takes the darkest of the four texels. A footprint has four such ways: its edges. Walls are taken to be straight within it; where the baker found them bent,
+//! the code of the upper edge has a mark ([`marked_bent`]).
+//!
+//! * No edge has a wall: plain weights.
+//! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
+//! * Two edges that meet have one: it cuts off the texel between them. On its side of the wall that texel counts
+//!   alone, on the other side the other three.
+//! * One edge has one: the wall ends within the footprint. On that edge one texel counts, on the opposite edge both do,
+//!   and in between they are blended. Between two walls that are well apart it is dark: a corner of a room narrower
+//!   than a texel.
+//! * More edges have one, or the footprint is marked: the darkest of the four counts. Light never leaks; shade may, by
+//!   a part of a texel.
+//!
+//! Twin: `shaders/src/wgsl/baked/blend_beside_walls.wgsl`.
+
+/// The code of a way with nothing on it.
+pub const OPEN: u8 = 0xFF;
+
+/// The same with the mark of bent walls.
+const OPEN_MARKED: u8 = 0xFE;
+
+/// Steps of a way.
+const STEPS: f32 = 16.0;
+
+/// Distance between two walls from which on they are not one wall that was rounded apart.
+const APART: f32 = 4.0 / STEPS;
+
+/// Sum of both distances, in steps, from which on a code is marked: unmarked ones add up to no more than all steps.
+const MARKED: u8 = 17;
+
+/// How the four texels of a footprint count: upper left, upper right, lower left, lower right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Weights that add up to one, or to zero where it is dark.
+    pub weights: [f32; 4],
+    /// Instead of the weights: the least of the four values.
+    pub takes_darkest: bool,
+}
+
+/// The code of a way on which surfaces stand at these shares of it, 0 to 1, seen from the first end and from the
+/// second.
+pub fn wall_code(from_first: f64, from_second: f64) -> u8 {
+    let steps = |share: f64| (share * f64::from(STEPS)).floor().clamp(0.0, 15.0) as u8;
+    let near = steps(from_first);
+    near << 4 | steps(from_second).min(16 - near)
+}
+
+/// A code with the mark that walls are bent within the footprint below and to the right of its way.
+pub fn marked_bent(code: u8) -> u8 {
+    if code == OPEN {
+        return OPEN_MARKED;
+    }
+    // Marked codes have both distances counted down from 15, which needs a sum of at least 17 to be told apart.
+    let (near, far) = (code >> 4, code & 15);
+    let near = near.min(13);
+    0xFF - (near << 4 | far.min(13 - near))
+}
+
+fn is_marked(code: u8) -> bool {
+    code != OPEN && (code >> 4) + (code & 15) >= MARKED
+}
+
+/// A code without its mark.
+fn unmarked(code: u8) -> u8 {
+    match code {
+        OPEN_MARKED => OPEN,
+        code if is_marked(code) => 0xFF - code,
+        code => code,
+    }
+}
+
+/// Where the walls on an edge begin and end, from its first texel.
+#[derive(Clone, Copy)]
+struct Edge {
+    has_wall: bool,
+    near: f32,
+    far: f32,
+}
+
+impl Edge {
+    fn new(code: u8) -> Self {
+        let code = unmarked(code);
+        let near = f32::from(code >> 4) / STEPS;
+        Self { has_wall: code != OPEN, near, far: 1.0 - f32::from(code & 15) / STEPS }
+    }
+
+    /// The same, from its second texel.
+    fn turned(self) -> Self {
+        Self { near: 1.0 - self.far, far: 1.0 - self.near, ..self }
+    }
+
+    /// Between two opposite edges.
+    fn between(self, other: Self, share: f32) -> Self {
+        let mix = |a: f32, b: f32| a * (1.0 - share) + b * share;
+        Self { has_wall: true, near: mix(self.near, other.near), far: mix(self.far, other.far) }
+    }
+
+    /// The weights of the texels before and behind the wall at a point of the edge: one at most is not zero.
+    fn sides(self, at: f32) -> [f32; 2] {
+        [if at < self.near { 1.0 } else { 0.0 }, if at > self.far { 1.0 } else { 0.0 }]
+    }
+}
+
+impl Reach {
+    /// Without walls.
+    pub fn plain([x, y]: [f32; 2]) -> Self {
+        Self::of([(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y])
+    }
+
+    fn of(weights: [f32; 4]) -> Self {
+        Self { weights, takes_darkest: false }
+    }
+
+    fn darkest() -> Self {
+        Self { weights: [0.25; 4], takes_darkest: true }
+    }
+
+    /// With walls on the upper, lower, left and right edge. `at` is the point's place between the texels, 0 to 1.
+    pub fn new(at @ [x, y]: [f32; 2], codes: [u8; 4]) -> Self {
+        let [top, bottom, left, right] = codes.map(Edge::new);
+        if is_marked(codes[0]) {
+            return Self::darkest();
+        }
+        match [top, bottom, left, right].map(|edge| edge.has_wall) {
+            [false, false, false, false] => Self::plain(at),
+            [true, true, false, false] => {
+                let [l, r] = top.between(bottom, y).sides(x);
+                if l + r == 0.0 { Self::darkest() } else { Self::of([l * (1.0 - y), r * (1.0 - y), l * y, r * y]) }
+            }
+            [false, false, true, true] => {
+                let [u, d] = left.between(right, x).sides(y);
+                if u + d == 0.0 { Self::darkest() } else { Self::of([u * (1.0 - x), u * x, d * (1.0 - x), d * x]) }
+            }
+            [true, false, true, false] => cut_off(at, 0, top, left, [x, y]),
+            [true, false, false, true] => cut_off(at, 1, top.turned(), right, [1.0 - x, y]),
+            [false, true, true, false] => cut_off(at, 2, bottom, left.turned(), [x, 1.0 - y]),
+            [false, true, false, true] => cut_off(at, 3, bottom.turned(), right.turned(), [1.0 - x, 1.0 - y]),
+            [true, false, false, false] => at_wall_end(at, top, x, y, [0, 1]),
+            [false, true, false, false] => at_wall_end(at, bottom, x, 1.0 - y, [2, 3]),
+            [false, false, true, false] => at_wall_end(at, left, y, x, [0, 2]),
+            [false, false, false, true] => at_wall_end(at, right, y, 1.0 - x, [1, 3]),
+            _ => Self::darkest(),
+        }
+    }
+}
+
+/// Where only one edge has a wall: `along` that edge, and `away` from it; `ends` are the edge's texels. The edge's own
+/// blend is a step; the opposite edge's is plain.
+fn at_wall_end(at: [f32; 2], edge: Edge, along: f32, away: f32, ends: [usize; 2]) -> Reach {
+    let [before, behind] = edge.sides(along);
+    if before + behind == 0.0 {
+        let apart = edge.far - edge.near;
+        return if (APART..=1.0).contains(&apart) && away < apart { Reach::of([0.0; 4]) } else { Reach::darkest() };
+    }
+    let mut weights = Reach::plain(at).weights;
+    weights[ends[0]] = (1.0 - away) * before;
+    weights[ends[1]] = (1.0 - away) * behind;
+    Reach::of(weights)
+}
+
+/// Where a wall cuts one texel off: `level` and `upright` are the edges that meet in it, and `u`, `v` the point's place
+/// seen from it.
+fn cut_off(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
+    let mut weights = [0.0; 4];
+    if u * upright.near + v * level.near < level.near * upright.near {
+        weights[texel] = 1.0;
+    } else if u * upright.far + v * level.far > level.far * upright.far {
+        weights = Reach::plain(at).weights;
+        weights[texel] = 0.0;
+        let sum: f32 = weights.iter().sum();
+        weights = weights.map(|weight| weight / sum);
+    } else {
+        return Reach::darkest();
+    }
+    Reach::of(weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn inside_only(reach: Reach, inside: [bool; 4]) -> bool {
+        let lit = inside.map(|is_inside| if is_inside { 0.0 } else { 1.0 });
+        let blended: f32 = reach.weights.iter().zip(lit).map(|(w, v)| w * v).sum();
+        let darkest = lit.into_iter().fold(1.0, f32::min);
+        (if reach.takes_darkest { darkest } else { blended }) == 0.0
+    }
+
+    #[test]
+    fn without_walls_it_is_a_bilinear_filter() {
+        assert_eq!(Reach::new([0.25, 0.5], [OPEN; 4]).weights, [0.375, 0.125, 0.375, 0.125]);
+    }
+
+    /// A straight line through the footprint at every angle and place, as a thin sheet and as a thick wall: what is on
+    /// its one side takes no light from the other, and points of either side read something.
+    #[test]
+    fn no_light_passes_a_straight_wall() {
+        for (step, thickness) in [(0, 0.0), (1, 0.05), (2, 0.3)] {
+            for angle in (0..360).step_by(7) {
+                let (sin, cos) = (f64::from(angle) + 0.3 * f64::from(step)).to_radians().sin_cos();
+                for offset in [0.05, 0.2, 0.45, 0.6, 0.9, 1.1] {
+                    let depth = |x: f64, y: f64| x * cos + y * sin - offset;
+                    let corner = |k: usize| depth((k % 2) as f64, (k / 2) as f64);
+                    if (0..4).any(|k| corner(k).abs() < 1e-3 || (-thickness..=0.0).contains(&corner(k))) {
+                        continue;
+                    }
+                    let is_inside = |depth: f64| depth < -thickness;
+                    let code = |a: usize, b: usize| match is_inside(corner(a)) == is_inside(corner(b)) {
+                        true => OPEN,
+                        false => {
+                            let crossing = |depth: f64| (corner(a) - depth) / (corner(a) - corner(b));
+                            let [near, far] = [crossing(0.0), crossing(-thickness)];
+                            wall_code(near.min(far), 1.0 - near.max(far))
+                        }
+                    };
+                    let codes = [code(0, 1), code(2, 3), code(0, 2), code(1, 3)];
+                    let inside = [0, 1, 2, 3].map(|k| is_inside(corner(k)));
+                    for i in 0..=40 {
+                        for j in 0..=40 {
+                            let (x, y) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
+                            let reach = Reach::new([x as f32, y as f32], codes);
+                            if is_inside(depth(x, y)) {
+                                let said = format!("{angle} {offset} at {x}, {y}: {reach:?} {codes:?}");
+                                assert!(inside_only(reach, inside), "{said}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn marks_leave_a_wall_no_narrower() {
+        for near in 0..16u8 {
+            for far in 0..16 - near {
+                let code = wall_code(f64::from(near) / 16.0, f64::from(far) / 16.0);
+                assert!(code != OPEN && !is_marked(code), "{near} {far}");
+                let marked = marked_bent(code);
+                assert!(is_marked(marked), "{near} {far}");
+                let [plain, bent] = [Edge::new(code), Edge::new(marked)];
+                assert!(bent.has_wall && bent.near <= plain.near && bent.far >= plain.far, "{near} {far}");
+            }
+        }
+        assert!(is_marked(marked_bent(OPEN)) && !Edge::new(marked_bent(OPEN)).has_wall && !is_marked(OPEN));
+        assert!(Reach::new([0.5, 0.5], [marked_bent(OPEN), OPEN, OPEN, OPEN]).takes_darkest);
+        assert!(!Reach::new([0.5, 0.5], [OPEN, marked_bent(OPEN), OPEN, OPEN]).takes_darkest);
+    }
+
+    #[test]
+    fn neighbouring_footprints_agree_on_their_common_edge() {
+        // The lower edge of one is the upper of the next, whatever the other edges have.
+        for code in [OPEN, wall_code(0.3, 0.6), wall_code(0.0, 0.9)] {
+            for upper in [[OPEN; 3], [wall_code(0.4, 0.5), OPEN, OPEN], [OPEN, OPEN, wall_code(0.2, 0.7)]] {
+                for lower in [[OPEN; 3], [wall_code(0.9, 0.05), OPEN, OPEN], [OPEN, wall_code(0.5, 0.4), OPEN]] {
+                    for i in 0..=20 {
+                        let x = i as f32 / 20.0;
+                        let above = Reach::new([x, 1.0], [upper[0], code, upper[1], upper[2]]);
+                        let below = Reach::new([x, 0.0], [code, lower[0], lower[1], lower[2]]);
+                        if !above.takes_darkest && !below.takes_darkest {
+                            let [.., a, b] = above.weights;
+                            let [c, d, ..] = below.weights;
+                            assert!((a - c).abs() + (b - d).abs() < 1e-6, "{x} {code} {upper:?} {lower:?}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! What stands between neighbouring texels: see [`super::reach`].
+//!
+//! Theory: two points of a surface belong to one room if one can walk from one to the other. Between neighbouring
+//! texels the way is the straight line just above the surface.
+//!
+//! Practice: a ray each way between the points from which shadow rays start, raised by what a curved surface bulges
+//! between them. A surface counts as a wall if it also stands one texel higher, or nearly as high as a ceiling that is
+//! lower than that: what is lower than a texel is wide parts no rooms, and is softened by the filter as any other
+//! detail. The surface's own chart is no wall, and neither are surfaces with alpha masks, whose holes let light
+//! through.
+
+use super::reach::{OPEN, marked_bent, wall_code};
+use super::{Atlas, GutterTexel, PageSamples, PageSize, Sample, SurfacePoint, surface_point};
+use crate::scene::{Geometry, Scene};
+use crate::trace::{Direction, Tracer};
+use glam::{DVec3, Vec2};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Codes of the ways to the right and to the lower neighbour of each texel of a page, in row order. `None` if nothing
+/// stands on any of them.
+pub fn find_walls(
+    finder: &WallFinder,
+    size: PageSize,
+    samples: &PageSamples,
+    gutter: &[GutterTexel],
+) -> Option<Vec<[u8; 2]>> {
+    let mut sources = vec![NO_SAMPLE; size.texel_count()];
+    samples.samples.iter().zip(0..).for_each(|(sample, index)| sources[sample.texel as usize] = index);
+    gutter.iter().for_each(|copy| sources[copy.texel as usize] = copy.sample);
+    let width = size.width as usize;
+    let code = |a: u32, b: u32| match a == b || a == NO_SAMPLE || b == NO_SAMPLE {
+        true => OPEN,
+        false => finder.code(&samples.samples[a as usize], &samples.samples[b as usize]),
+    };
+    let of_texel = |texel: usize| {
+        let right = (texel % width + 1 < width).then(|| sources[texel + 1]);
+        let lower = sources.get(texel + width).copied();
+        [right, lower].map(|other| other.map_or(OPEN, |other| code(sources[texel], other)))
+    };
+    let mut codes: Vec<[u8; 2]> = (0..sources.len()).into_par_iter().map(of_texel).collect();
+    if codes.iter().all(|codes| *codes == [OPEN; 2]) {
+        return None;
+    }
+    let is_bent = |texel: usize| {
+        let [right, lower] = [texel + 1, texel + width];
+        if texel % width + 1 == width || lower + 1 >= codes.len() {
+            return false;
+        }
+        let edges = [codes[texel][0], codes[lower][0], codes[texel][1], codes[right][1]];
+        if edges == [OPEN; 4] {
+            return false;
+        }
+        let corners = [texel, right, lower, lower + 1].map(|corner| samples.samples.get(sources[corner] as usize));
+        finder.is_bent(corners, edges)
+    };
+    let bent: Vec<usize> = (0..codes.len()).into_par_iter().filter(|&texel| is_bent(texel)).collect();
+    bent.into_iter().for_each(|texel| codes[texel][0] = marked_bent(codes[texel][0]));
+    Some(codes)
+}
+
+const NO_SAMPLE: u32 = u32::MAX;
+/// What walls are taken to be thicker on each side, as a share of the way, so that they may be less than straight.
+const MARGIN: f64 = 1.0 / 32.0;
+/// Parts into which a footprint is cut to see whether a wall is straight.
+const WAYS: u32 = 6;
+/// Share of the height of a ceiling that a wall below it must reach.
+const UNDER_CEILING: f64 = 0.9;
+
+/// The chart of every triangle of every mesh.
+struct Charts {
+    of_mesh: Vec<Vec<u32>>,
+}
+
+impl Charts {
+    fn new(scene: &Scene, atlas: &Atlas) -> Self {
+        let of_mesh = |mesh: usize| {
+            let layout = &atlas.layouts[mesh];
+            // Triangles that share a place on the page belong together, whether or not they share vertices.
+            let mut first_at = HashMap::with_capacity(layout.uvs.len());
+            let first = |(uv, v): (&Vec2, u32)| *first_at.entry((*uv + 0.0).to_array().map(f32::to_bits)).or_insert(v);
+            let mut parent: Vec<u32> = layout.uvs.iter().zip(0..).map(first).collect();
+            let triangles = layout.indices.as_chunks::<3>().0;
+            for [a, b, c] in triangles {
+                let [a, b, c] = [*a, *b, *c].map(|v| root(&mut parent, v));
+                let least = a.min(b).min(c);
+                [a, b, c].into_iter().for_each(|v| parent[v as usize] = least);
+            }
+            triangles.iter().map(|triangle| root(&mut parent, triangle[0])).collect()
+        };
+        Self { of_mesh: (0..scene.meshes.len()).into_par_iter().map(of_mesh).collect() }
+    }
+}
+
+fn root(parent: &mut [u32], mut v: u32) -> u32 {
+    while parent[v as usize] != v {
+        parent[v as usize] = parent[parent[v as usize] as usize];
+        v = parent[v as usize];
+    }
+    v
+}
+
+/// Finds what stands between texels of an atlas.
+pub struct WallFinder<'a> {
+    scene: &'a Scene,
+    geometry: &'a Geometry,
+    tracer: &'a Tracer,
+    charts: Charts,
+}
+
+impl<'a> WallFinder<'a> {
+    /// Prepares the charts of an atlas.
+    pub fn new(scene: &'a Scene, geometry: &'a Geometry, atlas: &Atlas, tracer: &'a Tracer) -> Self {
+        Self { scene, geometry, tracer, charts: Charts::new(scene, atlas) }
+    }
+
+    /// Instance and chart of a triangle.
+    fn chart(&self, triangle: u32) -> (usize, u32) {
+        let surface = self.geometry.surface(triangle as usize);
+        let mesh = self.scene.instances[surface.instance].mesh;
+        (surface.instance, self.charts.of_mesh[mesh][surface.mesh_triangle])
+    }
+
+    /// The code of the way between two texels. Texels of different charts have none.
+    pub fn code(&self, a: &Sample, b: &Sample) -> u8 {
+        let [chart, other] = [a, b].map(|sample| self.chart(sample.triangle));
+        if chart != other {
+            return OPEN;
+        }
+        let points = [a, b].map(|sample| surface_point(self.scene, self.geometry, sample));
+        let sides: &[f64] = if points[0].is_double_sided { &[1.0, -1.0] } else { &[1.0] };
+        sides.iter().filter_map(|side| self.wall(&points, *side, chart)).min().unwrap_or(OPEN)
+    }
+
+    /// The codes of a footprint's upper, lower, left and right edge, with the mark of bent walls. Of the four texels,
+    /// some may not be there.
+    pub fn codes(&self, corners: [Option<&Sample>; 4]) -> [u8; 4] {
+        let code = |a: usize, b: usize| match (corners[a], corners[b]) {
+            (Some(a), Some(b)) if a != b => self.code(a, b),
+            _ => OPEN,
+        };
+        let mut codes = [code(0, 1), code(2, 3), code(0, 2), code(1, 3)];
+        if codes != [OPEN; 4] && self.is_bent(corners, codes) {
+            codes[0] = marked_bent(codes[0]);
+        }
+        codes
+    }
+
+    /// The wall between two points on one side of their surface.
+    fn wall(&self, points: &[SurfacePoint; 2], side: f64, chart: (usize, u32)) -> Option<u8> {
+        let [a, b] = points.each_ref().map(|p| self.tracer.lift(p.position_m, p.normal * side, p.triangle));
+        let apart_m = a.distance(b);
+        let turn_rad = points[0].normal.angle_between(points[1].normal);
+        // Twice the bulge of an arc.
+        let raised_m = 0.25 * turn_rad * apart_m;
+        let raised = |height_m: f64| {
+            let up = |at: DVec3, p: &SurfacePoint| at + p.normal * (side * height_m);
+            [up(a, &points[0]), up(b, &points[1])]
+        };
+        let [near, far] = self.between(raised(raised_m), chart)?;
+        let clear_m = [(a, &points[0]), (b, &points[1])].map(|(from, point)| self.clear_m(from, point.normal * side));
+        let higher_m = (raised_m + apart_m).min(UNDER_CEILING * clear_m[0].min(clear_m[1]));
+        self.between(raised(higher_m), chart)?;
+        Some(wall_code(near - MARGIN, far - MARGIN))
+    }
+
+    /// Whether the walls within a footprint are other than straight, as far as a filter takes them for straight: where
+    /// two edges have one. Ways across the wall must meet it where a straight one would stand.
+    fn is_bent(&self, corners: [Option<&Sample>; 4], codes: [u8; 4]) -> bool {
+        let has_wall = codes.map(|code| code != OPEN);
+        if has_wall.iter().filter(|has_wall| **has_wall).count() != 2 {
+            return false;
+        }
+        let [Some(a), Some(b), Some(c), Some(d)] = corners else { return true };
+        let chart = self.chart(a.triangle);
+        let points = [a, b, c, d].map(|sample| surface_point(self.scene, self.geometry, sample));
+        let sides: &[f64] = if points[0].is_double_sided { &[1.0, -1.0] } else { &[1.0] };
+        let bent = |side: f64| {
+            let places = points.map(|p| self.tracer.lift(p.position_m, p.normal * side, p.triangle));
+            self.crossings(places, has_wall, chart).is_none_or(|differences| {
+                let [least, most] = differences;
+                most - least > MARGIN
+            })
+        };
+        !sides.iter().any(|side| !bent(*side))
+    }
+
+    /// Ways across a wall that two edges have, from edge to edge: the least and the largest difference, as shares of
+    /// the way, between where the wall stands and where a straight one would. `None` where a way meets no wall.
+    fn crossings(&self, [a, b, c, d]: [DVec3; 4], has_wall: [bool; 4], chart: (usize, u32)) -> Option<[f64; 2]> {
+        // The ends of ways whose first one meets the wall on one edge, and whose last one on the other.
+        let across = |starts: [DVec3; 2], ends: [DVec3; 2]| {
+            let way = |share: f64| [starts[0].lerp(starts[1], share), ends[0].lerp(ends[1], share)];
+            let near = |share: f64| self.between(way(share), chart);
+            let [first, last] = [near(0.0)?, near(1.0)?];
+            let mut range = [0.0f64; 2];
+            for step in 1..WAYS {
+                let share = f64::from(step) / f64::from(WAYS);
+                let met = near(share)?;
+                for end in 0..2 {
+                    let difference = met[end] - (first[end] + (last[end] - first[end]) * share);
+                    range = [range[0].min(difference), range[1].max(difference)];
+                }
+            }
+            Some(range)
+        };
+        match has_wall {
+            [true, true, ..] => across([a, c], [b, d]),
+            [.., true, true] => across([a, b], [c, d]),
+            [true, _, true, _] => self.fan(a, [b, d, c], chart),
+            [true, ..] => self.fan(b, [a, c, d], chart),
+            [_, true, true, _] => self.fan(c, [d, b, a], chart),
+            _ => self.fan(d, [c, a, b], chart),
+        }
+    }
+
+    /// The same for ways from the texel that a wall cuts off to points on the two other edges, which run from one of
+    /// `ends` to the next.
+    fn fan(&self, from: DVec3, ends: [DVec3; 3], chart: (usize, u32)) -> Option<[f64; 2]> {
+        let near = |to: DVec3| self.between([from, to], chart);
+        let [level, upright] = [near(ends[0])?[0], near(ends[2])?[0]].map(|share| share.max(1e-9));
+        let mut range = [0.0f64; 2];
+        for step in 1..2 * WAYS {
+            let share = f64::from(step) / f64::from(WAYS);
+            let (to, place) = match share <= 1.0 {
+                true => (ends[0].lerp(ends[1], share), [1.0, share]),
+                false => (ends[1].lerp(ends[2], share - 1.0), [2.0 - share, 1.0]),
+            };
+            let straight = 1.0 / (place[0] / level + place[1] / upright);
+            let difference = near(to)?[0] - straight;
+            range = [range[0].min(difference), range[1].max(difference)];
+        }
+        Some(range)
+    }
+
+    /// How far it is to what is above a point.
+    fn clear_m(&self, from: DVec3, up: DVec3) -> f64 {
+        self.tracer.closest_hit(from, &Direction::new(up)).map_or(f64::INFINITY, |hit| hit.distance_m)
+    }
+
+    /// How far, as shares of the way, the first walls are from either end.
+    fn between(&self, [a, b]: [DVec3; 2], chart: (usize, u32)) -> Option<[f64; 2]> {
+        let apart_m = a.distance(b);
+        let along = (b - a).try_normalize()?;
+        let first = |from: DVec3, along: DVec3| {
+            let is_wall = |triangle: u32| self.chart(triangle) != chart && !self.has_holes(triangle);
+            let hit = self.tracer.closest_hit_where(from, &Direction::new(along), is_wall)?;
+            (hit.distance_m < apart_m).then_some(hit.distance_m / apart_m)
+        };
+        Some([first(a, along)?, first(b, -along)?])
+    }
+
+    fn has_holes(&self, triangle: u32) -> bool {
+        let instance = self.geometry.instance[triangle as usize] as usize;
+        matches!(self.scene.material(instance).alpha, crate::scene::Alpha::Mask { .. })
+    }
+}

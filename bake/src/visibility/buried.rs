@@ -1,0 +1,127 @@
+//! Buried texels beside visible ones: they take the times that their visible neighbours agree on.
+//!
+//! Theory: a texel whose point lies inside a solid, or under something that lies on its surface, never sees the sun.
+//! Nobody sees it either, but a filter does, and would draw a dark line round every stone, kerb and decal. Its visible
+//! neighbours say what to show in its place; what only some of them see is left out, so that no light comes through a
+//! wall thinner than a texel.
+//!
+//! Practice: only texels that are hardly ever lit and have a lit neighbour are tested, by rays over the hemisphere: all of
+//! them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
+//! distance the backs of double-sided surfaces are walls of a room.)
+
+use crate::ambient::hemisphere_directions;
+use crate::atlas::{self, PageSamples, PageSize, SurfacePoint};
+use crate::intervals::{IntervalTable, Intervals};
+use crate::scene::{Geometry, Scene};
+use crate::trace::{Direction, Tracer};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Rays of a test.
+const RAYS: u32 = 16;
+/// Share of the path below which a texel may be buried.
+const DARK: f64 = 0.05;
+/// A front that is farther than a back by no more than this share of the distance counts as coincident.
+const COINCIDENT: f64 = 1e-5;
+
+/// Finds buried points.
+pub(crate) struct BuriedPoints<'a> {
+    pub scene: &'a Scene,
+    pub geometry: &'a Geometry,
+    pub tracer: &'a Tracer,
+    /// Width of a texel.
+    pub texel_m: f64,
+}
+
+impl BuriedPoints<'_> {
+    /// Whether a point lies inside a solid, or right under something.
+    pub fn is_buried(&self, point: &SurfacePoint) -> bool {
+        let sides: &[f64] = if point.is_double_sided { &[1.0, -1.0] } else { &[1.0] };
+        sides.iter().all(|side| {
+            let normal = point.normal * *side;
+            let from = self.tracer.lift(point.position_m, normal, point.triangle);
+            hemisphere_directions(normal, RAYS).all(|direction| self.meets_back(from, direction))
+        })
+    }
+
+    fn meets_back(&self, from: DVec3, direction: DVec3) -> bool {
+        let along = Direction::new(direction);
+        let is_back = |triangle: u32| self.geometry.normal(triangle as usize).dot(direction) > 0.0;
+        let Some(hit) = self.tracer.closest_hit(from, &along) else { return false };
+        let instance = self.geometry.instance[hit.triangle as usize] as usize;
+        if !is_back(hit.triangle) || (self.scene.material(instance).is_double_sided && hit.distance_m > self.texel_m) {
+            return false;
+        }
+        let front = self.tracer.closest_hit_where(from, &along, |triangle| !is_back(triangle));
+        front.is_none_or(|front| front.distance_m > hit.distance_m * (1.0 + COINCIDENT) + self.tracer.run_up_m())
+    }
+}
+
+/// Answers of a page's texels, in their order: for each as many lists as there are lanes.
+#[derive(Clone, Copy)]
+pub(crate) struct Answers<'a> {
+    pub tables: &'a [IntervalTable],
+    pub lane_count: usize,
+}
+
+impl Answers<'_> {
+    fn get(&self, place: usize, lane: usize) -> &[[f64; 2]] {
+        let index = place * self.lane_count + lane;
+        // All tables but the last have the same length.
+        let length = self.tables[0].len();
+        self.tables[index / length].get(index % length)
+    }
+
+    /// Whether a texel sees next to nothing of the sun: what lies on a surface lets in the sun that grazes it.
+    fn is_dark(&self, place: usize) -> bool {
+        let length = |lane: usize| self.get(place, lane).iter().map(|[start, end]| end - start).sum::<f64>();
+        (0..self.lane_count).all(|lane| length(lane) < DARK)
+    }
+}
+
+/// The lists that buried texels of a page get instead of their own, by their place in `order`, which says what sample
+/// each answer is of.
+pub(crate) fn fill_buried(
+    buried: &BuriedPoints,
+    size: PageSize,
+    PageSamples { samples }: &PageSamples,
+    order: &[u32],
+    answers: Answers,
+) -> HashMap<usize, Vec<Intervals>> {
+    let mut place_of = vec![NONE; size.texel_count()];
+    for (place, &sample) in (0..).zip(order) {
+        place_of[samples[sample as usize].texel as usize] = place;
+    }
+    let neighbours = |place: usize| {
+        let texel = samples[order[place] as usize].texel;
+        let (x, y) = (texel % size.width, texel / size.width);
+        let columns = x.saturating_sub(1)..(x + 2).min(size.width);
+        let rows = y.saturating_sub(1)..(y + 2).min(size.height);
+        let texels = rows.flat_map(move |y| columns.clone().map(move |x| y * size.width + x));
+        let places = texels.map(|texel| place_of[texel as usize]).filter(|&other| other != NONE);
+        places.map(|other| other as usize).filter(move |&other| other != place).collect::<Vec<_>>()
+    };
+    let is_buried = |place: usize| {
+        let point = atlas::surface_point(buried.scene, buried.geometry, &samples[order[place] as usize]);
+        answers.is_dark(place) && buried.is_buried(&point)
+    };
+    let fill = |place: usize| {
+        if !answers.is_dark(place) {
+            return None;
+        }
+        let neighbours = neighbours(place);
+        if neighbours.iter().all(|&other| answers.is_dark(other)) || !is_buried(place) {
+            return None;
+        }
+        let visible: Vec<usize> = neighbours.into_iter().filter(|&other| !is_buried(other)).collect();
+        let of_lane = |lane: usize| {
+            let lists = visible.iter().map(|&other| Intervals::from_unsorted(answers.get(other, lane).to_vec()));
+            lists.reduce(|a, b| a.intersection(&b)).unwrap_or_default()
+        };
+        Some((place, (0..answers.lane_count).map(of_lane).collect()))
+    };
+    (0..order.len()).into_par_iter().filter_map(fill).collect()
+}
+
+const NONE: u32 = u32::MAX;

@@ -1,0 +1,155 @@
+// The values of a footprint's texels blended, in the order of `texel_of`: only of those that no wall parts from the
+// point. Twin of bake/src/atlas/reach.rs, where it is explained: same names, same order.
+@group(1) @binding(7) var wall_map: texture_2d_array<u32>;
+
+const OPEN: u32 = 255u;
+const OPEN_MARKED: u32 = 254u;
+
+// Where the walls on an edge begin and end, from its first texel.
+struct Edge {
+    has_wall: bool,
+    near: f32,
+    far: f32,
+}
+
+// How the four texels count: by weights, or the darkest of them.
+struct Reach {
+    weights: vec4<f32>,
+    takes_darkest: bool,
+}
+
+fn is_marked(code: u32) -> bool {
+    return code != OPEN && (code >> 4u) + (code & 15u) >= 17u;
+}
+
+fn unmarked(code: u32) -> u32 {
+    if code == OPEN_MARKED {
+        return OPEN;
+    }
+    return select(code, 255u - code, is_marked(code));
+}
+
+fn edge_of(marked: u32) -> Edge {
+    let code = unmarked(marked);
+    return Edge(code != OPEN, f32(code >> 4u) / 16.0, 1.0 - f32(code & 15u) / 16.0);
+}
+
+fn turned(edge: Edge) -> Edge {
+    return Edge(edge.has_wall, 1.0 - edge.far, 1.0 - edge.near);
+}
+
+fn between(a: Edge, b: Edge, share: f32) -> Edge {
+    return Edge(true, mix(a.near, b.near, share), mix(a.far, b.far, share));
+}
+
+// The weights of the texels before and behind the wall at a point of the edge.
+fn sides(edge: Edge, at: f32) -> vec2<f32> {
+    return vec2<f32>(select(0.0, 1.0, at < edge.near), select(0.0, 1.0, at > edge.far));
+}
+
+fn plain(at: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>((1.0 - at.x) * (1.0 - at.y), at.x * (1.0 - at.y), (1.0 - at.x) * at.y, at.x * at.y);
+}
+
+// Where only one edge has a wall: `along` that edge, and `away` from it; `first` and `second` mark its texels.
+fn at_wall_end(
+    at: vec2<f32>,
+    edge: Edge,
+    along: f32,
+    away: f32,
+    first: vec4<f32>,
+    second: vec4<f32>,
+) -> Reach {
+    let side = sides(edge, along);
+    if side.x + side.y == 0.0 {
+        let apart = edge.far - edge.near;
+        return Reach(vec4<f32>(0.0), !(apart >= 0.25 && away < apart));
+    }
+    let others = plain(at) * (1.0 - first - second);
+    return Reach(others + (1.0 - away) * (side.x * first + side.y * second), false);
+}
+
+// Where a wall cuts the marked texel off: `level` and `upright` are the edges that meet in it, and `place` is the
+// point's, seen from it.
+fn cut_off(at: vec2<f32>, texel: vec4<f32>, level: Edge, upright: Edge, place: vec2<f32>) -> Reach {
+    if place.x * upright.near + place.y * level.near < level.near * upright.near {
+        return Reach(texel, false);
+    }
+    if place.x * upright.far + place.y * level.far > level.far * upright.far {
+        let others = plain(at) * (1.0 - texel);
+        return Reach(others / dot(others, vec4<f32>(1.0)), false);
+    }
+    return Reach(vec4<f32>(0.0), true);
+}
+
+fn reach(footprint: Footprint) -> Reach {
+    let first = textureLoad(wall_map, texel_of(footprint, 0), 0, 0).xy;
+    let second = textureLoad(wall_map, texel_of(footprint, 1), 0, 0).y;
+    let third = textureLoad(wall_map, texel_of(footprint, 2), 0, 0).x;
+    let at = footprint.weight;
+    if all(vec4<u32>(first, second, third) == vec4<u32>(OPEN)) {
+        return Reach(plain(at), false);
+    }
+    let top = edge_of(first.x);
+    let bottom = edge_of(third);
+    let left = edge_of(first.y);
+    let right = edge_of(second);
+    let upper_left = vec4<f32>(1.0, 0.0, 0.0, 0.0);
+    let upper_right = vec4<f32>(0.0, 1.0, 0.0, 0.0);
+    let lower_left = vec4<f32>(0.0, 0.0, 1.0, 0.0);
+    let lower_right = vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    let back = 1.0 - at;
+    let walls = vec4<bool>(top.has_wall, bottom.has_wall, left.has_wall, right.has_wall);
+    let count = dot(select(vec4<f32>(0.0), vec4<f32>(1.0), walls), vec4<f32>(1.0));
+    if is_marked(first.x) || count > 2.0 {
+        return Reach(vec4<f32>(0.25), true);
+    }
+    if count == 0.0 {
+        return Reach(plain(at), false);
+    }
+    if walls.x && walls.y {
+        let side = sides(between(top, bottom, at.y), at.x);
+        return Reach(vec4<f32>(side * back.y, side * at.y), side.x + side.y == 0.0);
+    }
+    if walls.z && walls.w {
+        let side = sides(between(left, right, at.x), at.y);
+        let level = vec2<f32>(back.x, at.x);
+        return Reach(vec4<f32>(side.x * level, side.y * level), side.x + side.y == 0.0);
+    }
+    if walls.x && walls.z {
+        return cut_off(at, upper_left, top, left, at);
+    }
+    if walls.x && walls.w {
+        return cut_off(at, upper_right, turned(top), right, vec2<f32>(back.x, at.y));
+    }
+    if walls.y && walls.z {
+        return cut_off(at, lower_left, bottom, turned(left), vec2<f32>(at.x, back.y));
+    }
+    if walls.y && walls.w {
+        return cut_off(at, lower_right, turned(bottom), turned(right), back);
+    }
+    if walls.x {
+        return at_wall_end(at, top, at.x, at.y, upper_left, upper_right);
+    }
+    if walls.y {
+        return at_wall_end(at, bottom, at.x, back.y, lower_left, lower_right);
+    }
+    if walls.z {
+        return at_wall_end(at, left, at.y, at.x, upper_left, lower_left);
+    }
+    return at_wall_end(at, right, at.y, back.x, upper_right, lower_right);
+}
+
+fn blended(at: Footprint, values: vec4<f32>) -> f32 {
+    let share = reach(at);
+    let darkest = min(min(values.x, values.y), min(values.z, values.w));
+    return select(dot(share.weights, values), darkest, share.takes_darkest);
+}
+
+// The same for colours.
+fn blended_colors(at: Footprint, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, d: vec3<f32>) -> vec3<f32> {
+    let share = reach(at);
+    let weights = share.weights;
+    let sum = a * weights.x + b * weights.y + c * weights.z + d * weights.w;
+    return select(sum, min(min(a, b), min(c, d)), share.takes_darkest);
+}
