@@ -205,22 +205,33 @@ fn sealed_rooms_of_the_cases_are_dark_at_any_density() {
         assert!(scene.materials.iter().all(|material| material.alpha == Alpha::Opaque));
         for texels_per_metre in [1.5, 4.0, 9.0] {
             let stage = stage_of(&scene, texels_per_metre, true);
-            // A point that sees neither the sun nor any sky is sealed in.
+            // A point that sees neither the sun nor any sky is sealed in; one that sees some back lies within a wall,
+            // if walls are thick.
+            let (has_inner_faces, has_thick_walls) = (!case.starts_with("11"), case.starts_with("20"));
             let path = stage.path.clone().unwrap();
             let engine = ExactEngine::new(stage.tracer(), &[path]);
-            let sees_sky = |point: &SurfacePoint, k: i32| {
-                let (y, turn) = ((f64::from(k) + 0.5) / 64.0, f64::from(k) * 2.4);
-                let level = (1.0 - y * y).sqrt();
-                let direction = DVec3::new(level * turn.cos(), y, level * turn.sin());
-                let from = point.position_m + point.normal * 0.02;
-                direction.dot(point.normal) > 0.0 && !stage.tracer().is_occluded(from, &Direction::new(direction))
-            };
             let is_sealed = |point: &SurfacePoint| {
-                !(0..64).any(|k| sees_sky(point, k)) && lit_at(&engine, point)[0].as_slice().is_empty()
+                let from = point.position_m + point.normal * 0.02;
+                for k in 0..128 {
+                    let (y, turn) = ((f64::from(k) + 0.5) / 64.0 - 1.0, f64::from(k) * 2.4);
+                    let level = (1.0 - y * y).sqrt();
+                    let direction = DVec3::new(level * turn.cos(), y, level * turn.sin());
+                    if direction.dot(point.normal) > 0.0 {
+                        let hit = stage.tracer().closest_hit(from, &Direction::new(direction));
+                        let Some(hit) = hit else { return false };
+                        let is_front = stage.geometry.normal(hit.triangle as usize).dot(direction) < 0.0;
+                        if has_thick_walls && !is_front {
+                            return false;
+                        }
+                    }
+                }
+                lit_at(&engine, point)[0].as_slice().is_empty()
             };
             let (most, count) = most_light(&stage, &mut Numbers(3), is_sealed);
             assert!(count > 100, "{case}: {count}");
-            assert_eq!(most, [0.0; 2], "{case} at {texels_per_metre}, {count} points");
+            assert_eq!(most[0], 0.0, "{case} at {texels_per_metre}, {count} points");
+            // A room without inner faces is a solid to ambient occlusion: its floor takes the darkest value outside.
+            assert!(!has_inner_faces || most[1] == 0.0, "{case} at {texels_per_metre}: {} of sky", most[1]);
         }
     }
 }

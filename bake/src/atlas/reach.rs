@@ -4,10 +4,11 @@
 //! What stands between two neighbouring texels is known to the baker ([`super::walls`]), so a filter can leave out
 //! texels that the point does not reach.
 //!
-//! Practice: a *wall code* says what stands on the way from a texel's point to its neighbour's: nothing ([`OPEN`]), or
-//! where the first surface stands as seen from either end, in sixteenths of the way, rounded towards that end. What
-//! lies between the two surfaces is the wall itself, and takes the darkest of the four texels. A footprint has four such ways: its edges. Walls are taken to be straight within it; where the baker found them bent,
-//! the code of the upper edge has a mark ([`marked_bent`]).
+//! Practice: a *wall code* says what stands on the way from a texel's point to its neighbour's: nothing ([`OPEN`]), a
+//! wall at one of [`PLACES`] places, or two surfaces at least a quarter of the way apart (a thick wall, or the corner of
+//! a room), to an eighth of the way. Within the wall the darkest of the four texels counts. A footprint has four such
+//! ways: its edges. Walls are taken to be straight within it; where the baker found them bent, the code of the upper
+//! edge has a mark ([`marked_bent`]).
 //!
 //! * No edge has a wall: plain weights.
 //! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
@@ -27,14 +28,18 @@ pub const OPEN: u8 = 0xFF;
 /// The same with the mark of bent walls.
 const OPEN_MARKED: u8 = 0xFE;
 
-/// Steps of a way.
-const STEPS: f32 = 16.0;
+/// Codes from here on, up to the open ones, have a mark; without it, they are less by this number.
+const MARKED: u8 = 127;
 
-/// Distance between two walls from which on they are not one wall that was rounded apart.
-const APART: f32 = 4.0 / STEPS;
+/// Places where a wall may stand, from the first texel of a way to the second.
+const PLACES: u8 = 96;
 
-/// Sum of both distances, in steps, from which on a code is marked: unmarked ones add up to no more than all steps.
-const MARKED: u8 = 17;
+/// Half the width of a wall at a place: rounding, and what a straight wall may be off.
+const HALF_WIDTH: f32 = 1.0 / 64.0;
+
+/// Steps of the way, and the fewest between two surfaces that are apart. There are 28 such pairs.
+const STEPS: u8 = 8;
+const APART: u8 = 2;
 
 /// How the four texels of a footprint count: upper left, upper right, lower left, lower right.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,34 +50,43 @@ pub struct Reach {
     pub takes_darkest: bool,
 }
 
-/// The code of a way on which surfaces stand at these shares of it, 0 to 1, seen from the first end and from the
-/// second.
+/// The code of a way on which the first surface stands at these shares of it, 0 to 1, seen from the first end and from
+/// the second.
 pub fn wall_code(from_first: f64, from_second: f64) -> u8 {
-    let steps = |share: f64| (share * f64::from(STEPS)).floor().clamp(0.0, 15.0) as u8;
-    let near = steps(from_first);
-    near << 4 | steps(from_second).min(16 - near)
+    let (near, far) = (from_first.clamp(0.0, 1.0), 1.0 - from_second.clamp(0.0, 1.0));
+    if (far - near) * f64::from(STEPS) < f64::from(APART) {
+        let place = (near + far) * 0.5 * f64::from(PLACES - 1);
+        return place.round() as u8;
+    }
+    let near = (near * f64::from(STEPS)).floor() as u8;
+    let far = ((far * f64::from(STEPS)).ceil() as u8).min(STEPS);
+    PLACES + pairs_before(near) + (far - near - APART)
+}
+
+/// Pairs of surfaces of which the first stands before this step.
+fn pairs_before(near: u8) -> u8 {
+    (0..near).map(|before| STEPS - APART + 1 - before).sum()
 }
 
 /// A code with the mark that walls are bent within the footprint below and to the right of its way.
 pub fn marked_bent(code: u8) -> u8 {
-    if code == OPEN {
-        return OPEN_MARKED;
-    }
-    // Marked codes have both distances counted down from 15, which needs a sum of at least 17 to be told apart.
-    let (near, far) = (code >> 4, code & 15);
-    let near = near.min(13);
-    0xFF - (near << 4 | far.min(13 - near))
+    if code == OPEN { OPEN_MARKED } else { code + MARKED }
+}
+
+/// Whether nothing stands on a way.
+pub fn is_open(code: u8) -> bool {
+    unmarked(code) == OPEN
 }
 
 fn is_marked(code: u8) -> bool {
-    code != OPEN && (code >> 4) + (code & 15) >= MARKED
+    code != OPEN && code >= MARKED
 }
 
 /// A code without its mark.
 fn unmarked(code: u8) -> u8 {
     match code {
         OPEN_MARKED => OPEN,
-        code if is_marked(code) => 0xFF - code,
+        code if is_marked(code) => code - MARKED,
         code => code,
     }
 }
@@ -88,8 +102,19 @@ struct Edge {
 impl Edge {
     fn new(code: u8) -> Self {
         let code = unmarked(code);
-        let near = f32::from(code >> 4) / STEPS;
-        Self { has_wall: code != OPEN, near, far: 1.0 - f32::from(code & 15) / STEPS }
+        if code < PLACES {
+            let place = f32::from(code) / f32::from(PLACES - 1);
+            let (near, far) = ((place - HALF_WIDTH).max(0.0), (place + HALF_WIDTH).min(1.0));
+            return Self { has_wall: true, near, far };
+        }
+        let mut pair = code - PLACES;
+        let mut near = 0;
+        while near + APART < STEPS && pair > STEPS - APART - near {
+            pair -= STEPS - APART + 1 - near;
+            near += 1;
+        }
+        let share = |step: u8| f32::from(step) / f32::from(STEPS);
+        Self { has_wall: code != OPEN, near: share(near), far: share(near + APART + pair.min(STEPS)) }
     }
 
     /// The same, from its second texel.
@@ -158,7 +183,8 @@ fn at_wall_end(at: [f32; 2], edge: Edge, along: f32, away: f32, ends: [usize; 2]
     let [before, behind] = edge.sides(along);
     if before + behind == 0.0 {
         let apart = edge.far - edge.near;
-        return if (APART..=1.0).contains(&apart) && away < apart { Reach::of([0.0; 4]) } else { Reach::darkest() };
+        let is_corner = apart > 4.0 * HALF_WIDTH && away < apart;
+        return if is_corner { Reach::of([0.0; 4]) } else { Reach::darkest() };
     }
     let mut weights = Reach::plain(at).weights;
     weights[ends[0]] = (1.0 - away) * before;
@@ -239,18 +265,26 @@ mod tests {
     }
 
     #[test]
-    fn marks_leave_a_wall_no_narrower() {
-        for near in 0..16u8 {
-            for far in 0..16 - near {
-                let code = wall_code(f64::from(near) / 16.0, f64::from(far) / 16.0);
-                assert!(code != OPEN && !is_marked(code), "{near} {far}");
-                let marked = marked_bent(code);
-                assert!(is_marked(marked), "{near} {far}");
-                let [plain, bent] = [Edge::new(code), Edge::new(marked)];
-                assert!(bent.has_wall && bent.near <= plain.near && bent.far >= plain.far, "{near} {far}");
+    fn codes_hold_the_walls_they_were_made_of() {
+        for i in 0..=40 {
+            for j in 0..=40 - i {
+                let [near, from_second] = [i, j].map(|k| f64::from(k) / 40.0);
+                let code = wall_code(near, from_second);
+                assert!(code < MARKED && !is_open(code), "{near} {from_second}: {code}");
+                let (plain, bent) = (Edge::new(code), Edge::new(marked_bent(code)));
+                assert!(is_marked(marked_bent(code)) && !is_marked(code));
+                assert_eq!((plain.near, plain.far), (bent.near, bent.far), "{near} {from_second}");
+                let (near, far) = (near as f32, 1.0 - from_second as f32);
+                if far - near < 0.25 {
+                    let middle = 0.5 * (near + far);
+                    assert!(plain.near < middle - 0.01 && plain.far > middle + 0.01, "{near} {far}");
+                } else {
+                    assert!(plain.near <= near && plain.far >= far, "{near} {far}: {} {}", plain.near, plain.far);
+                    assert!(plain.near > near - 0.13 && plain.far < far + 0.13, "{near} {far}");
+                }
             }
         }
-        assert!(is_marked(marked_bent(OPEN)) && !Edge::new(marked_bent(OPEN)).has_wall && !is_marked(OPEN));
+        assert!(is_marked(marked_bent(OPEN)) && is_open(marked_bent(OPEN)) && !is_marked(OPEN) && is_open(OPEN));
         assert!(Reach::new([0.5, 0.5], [marked_bent(OPEN), OPEN, OPEN, OPEN]).takes_darkest);
         assert!(!Reach::new([0.5, 0.5], [OPEN, marked_bent(OPEN), OPEN, OPEN]).takes_darkest);
     }

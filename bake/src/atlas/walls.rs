@@ -60,8 +60,8 @@ pub fn find_walls(
 }
 
 const NO_SAMPLE: u32 = u32::MAX;
-/// What walls are taken to be thicker on each side, as a share of the way, so that they may be less than straight.
-const MARGIN: f64 = 1.0 / 32.0;
+/// How far a wall may be from straight, as a share of the way: with rounding, filters allow for a little more.
+const MOST_BENT: f64 = 1.0 / 128.0;
 /// Parts into which a footprint is cut to see whether a wall is straight.
 const WAYS: u32 = 6;
 /// Share of the height of a ceiling that a wall below it must reach.
@@ -161,7 +161,7 @@ impl<'a> WallFinder<'a> {
         let clear_m = [(a, &points[0]), (b, &points[1])].map(|(from, point)| self.clear_m(from, point.normal * side));
         let higher_m = (raised_m + apart_m).min(UNDER_CEILING * clear_m[0].min(clear_m[1]));
         self.between(raised(higher_m), chart)?;
-        Some(wall_code(near - MARGIN, far - MARGIN))
+        Some(wall_code(near, far))
     }
 
     /// Whether the walls within a footprint are other than straight, as far as a filter takes them for straight: where
@@ -177,10 +177,8 @@ impl<'a> WallFinder<'a> {
         let sides: &[f64] = if points[0].is_double_sided { &[1.0, -1.0] } else { &[1.0] };
         let bent = |side: f64| {
             let places = points.map(|p| self.tracer.lift(p.position_m, p.normal * side, p.triangle));
-            self.crossings(places, has_wall, chart).is_none_or(|differences| {
-                let [least, most] = differences;
-                most - least > MARGIN
-            })
+            let differences = self.crossings(places, has_wall, chart);
+            differences.is_none_or(|[least, most]| most.max(-least) > MOST_BENT)
         };
         !sides.iter().any(|side| !bent(*side))
     }
@@ -233,9 +231,15 @@ impl<'a> WallFinder<'a> {
         Some(range)
     }
 
-    /// How far it is to what is above a point.
+    /// How far it is to the ceiling above a point. From inside a solid, its top is none.
     fn clear_m(&self, from: DVec3, up: DVec3) -> f64 {
-        self.tracer.closest_hit(from, &Direction::new(up)).map_or(f64::INFINITY, |hit| hit.distance_m)
+        let faces_down = |triangle: u32| {
+            let instance = self.geometry.instance[triangle as usize] as usize;
+            let is_double_sided = self.scene.material(instance).is_double_sided;
+            is_double_sided || self.geometry.normal(triangle as usize).dot(up) < 0.0
+        };
+        let hit = self.tracer.closest_hit(from, &Direction::new(up)).filter(|hit| faces_down(hit.triangle));
+        hit.map_or(f64::INFINITY, |hit| hit.distance_m)
     }
 
     /// How far, as shares of the way, the first walls are from either end.

@@ -26,6 +26,8 @@ struct PageTexels<'a> {
     order: &'a [u32],
     /// Those that copy them.
     gutter: &'a [GutterTexel],
+    /// What stands between them.
+    walls: Option<&'a [[u8; 2]]>,
 }
 
 /// Bakes pages, and keeps the statistics.
@@ -111,9 +113,9 @@ impl<'a> PageBaker<'a> {
         self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
         let order = atlas::in_tile_order(&samples, size);
         let gutter = atlas::gutter(size, &samples, self.settings.padding_texels);
-        let texels = PageTexels { samples: &samples, order: &order, gutter: &gutter };
         let finder = &self.walls;
         let walls = timed(&mut self.stats.seconds.unwrap, || atlas::find_walls(finder, size, &samples, &gutter));
+        let texels = PageTexels { samples: &samples, order: &order, gutter: &gutter, walls: walls.as_deref() };
         let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
         let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, texels)).transpose()?;
@@ -169,7 +171,7 @@ impl<'a> PageBaker<'a> {
         page: usize,
         light: &LightJob,
         account: &mut LightAccount,
-        PageTexels { samples, order, gutter }: PageTexels,
+        PageTexels { samples, order, gutter, walls }: PageTexels,
         tables: &[IntervalTable],
     ) -> Vec<LaneMaps> {
         let PageSamples { samples: texels } = samples;
@@ -178,7 +180,7 @@ impl<'a> PageBaker<'a> {
         let size = self.atlas.pages[page];
         let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);
         let answers = Answers { tables, lane_count: light.lanes.len() };
-        let filled = fill_buried(&self.buried, size, samples, order, answers);
+        let filled = fill_buried(&self.buried, size, samples, order, walls, answers);
         account.filled_texels += filled.len() as u64;
         let mut answers = tables.iter().flat_map(IntervalTable::iter);
         for (place, sample) in order.iter().map(|&i| &texels[i as usize]).enumerate() {

@@ -171,8 +171,7 @@ pub struct AtlasEntry {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lamp: Option<LampMapsEntry>,
     /// What stands between neighbouring texels, where anything does: a PNG of grey (the way to the right neighbour) and
-    /// alpha (to the lower). 255: nothing. Else the first surface's distance from this texel in sixteenths of the way
-    /// (upper four bits) and from the neighbour (lower four bits).
+    /// alpha (to the lower), of the codes that [`crate::atlas::wall_code`] makes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<String>,
     /// Ambient visibility, 0 is occluded: a grey PNG; or, if some texel has two sides, an RGB PNG with the front in

@@ -1,9 +1,9 @@
 //! Buried texels beside visible ones: they take the times that their visible neighbours agree on.
 //!
 //! Theory: a texel whose point lies inside a solid, or under something that lies on its surface, never sees the sun.
-//! Nobody sees it either, but a filter does, and would draw a dark line round every stone, kerb and decal. Its visible
-//! neighbours say what to show in its place; what only some of them see is left out, so that no light comes through a
-//! wall thinner than a texel.
+//! Nobody sees it either, but a filter does, and would draw a dark line round what lies there. Its visible neighbours
+//! say what to show in its place; what only some of them see is left out. Neighbours behind walls say nothing: no filter
+//! blends across ([`crate::atlas::find_walls`]), and what looks like a solid may be a room without inner faces.
 //!
 //! Practice: only texels that are hardly ever lit and have a lit neighbour are tested, by rays over the hemisphere: all of
 //! them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
@@ -81,26 +81,34 @@ impl Answers<'_> {
 }
 
 /// The lists that buried texels of a page get instead of their own, by their place in `order`, which says what sample
-/// each answer is of.
+/// each answer is of. `walls` are the page's.
 pub(crate) fn fill_buried(
     buried: &BuriedPoints,
     size: PageSize,
     PageSamples { samples }: &PageSamples,
     order: &[u32],
+    walls: Option<&[[u8; 2]]>,
     answers: Answers,
 ) -> HashMap<usize, Vec<Intervals>> {
     let mut place_of = vec![NONE; size.texel_count()];
     for (place, &sample) in (0..).zip(order) {
         place_of[samples[sample as usize].texel as usize] = place;
     }
+    let width = size.width as usize;
+    let is_open = |texel: usize, way: usize| walls.is_none_or(|codes| atlas::is_open(codes[texel][way]));
+    // From a texel to one beside it or diagonal to it, by way of the one beside.
+    let reaches = |[x, y]: [usize; 2], [to_x, to_y]: [usize; 2]| {
+        let level = x == to_x || is_open(y * width + x.min(to_x), 0);
+        level && (y == to_y || is_open(y.min(to_y) * width + to_x, 1))
+    };
     let neighbours = |place: usize| {
-        let texel = samples[order[place] as usize].texel;
-        let (x, y) = (texel % size.width, texel / size.width);
-        let columns = x.saturating_sub(1)..(x + 2).min(size.width);
-        let rows = y.saturating_sub(1)..(y + 2).min(size.height);
-        let texels = rows.flat_map(move |y| columns.clone().map(move |x| y * size.width + x));
-        let places = texels.map(|texel| place_of[texel as usize]).filter(|&other| other != NONE);
-        places.map(|other| other as usize).filter(move |&other| other != place).collect::<Vec<_>>()
+        let texel = samples[order[place] as usize].texel as usize;
+        let at @ [x, y] = [texel % width, texel / width];
+        let columns = x.saturating_sub(1)..(x + 2).min(width);
+        let rows = y.saturating_sub(1)..(y + 2).min(size.height as usize);
+        let texels = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).filter(|to| *to != at && reaches(at, *to));
+        let places = texels.map(|[x, y]| place_of[y * width + x]).filter(|&other| other != NONE);
+        places.map(|other| other as usize).collect::<Vec<_>>()
     };
     let is_buried = |place: usize| {
         let point = atlas::surface_point(buried.scene, buried.geometry, &samples[order[place] as usize]);

@@ -25,7 +25,7 @@ const CASES: [&str; 4] = ["01_pbr_keep", "24_emissive", "07_quantised/q.glb", "2
 const SCENES: [&str; 10] = [
     "box_textured/BoxTextured.glb",
     "box_textured/CornellBox.glb",
-    "delft_3d/zurich_node.glb",
+    "gazebo_thin/tower_crane.glb",
     "gazebo_thin/oak_tree.glb",
     "gazebo_thin/playground.glb",
     "japanese_bridge_garden/japanese_bridge_garden.glb",

@@ -4,6 +4,11 @@
 
 const OPEN: u32 = 255u;
 const OPEN_MARKED: u32 = 254u;
+const MARKED: u32 = 127u;
+const PLACES: u32 = 96u;
+const HALF_WIDTH: f32 = 1.0 / 64.0;
+const STEPS: u32 = 8u;
+const APART: u32 = 2u;
 
 // Where the walls on an edge begin and end, from its first texel.
 struct Edge {
@@ -19,19 +24,29 @@ struct Reach {
 }
 
 fn is_marked(code: u32) -> bool {
-    return code != OPEN && (code >> 4u) + (code & 15u) >= 17u;
+    return code != OPEN && code >= MARKED;
 }
 
 fn unmarked(code: u32) -> u32 {
     if code == OPEN_MARKED {
         return OPEN;
     }
-    return select(code, 255u - code, is_marked(code));
+    return select(code, code - MARKED, is_marked(code));
 }
 
 fn edge_of(marked: u32) -> Edge {
     let code = unmarked(marked);
-    return Edge(code != OPEN, f32(code >> 4u) / 16.0, 1.0 - f32(code & 15u) / 16.0);
+    if code < PLACES {
+        let place = f32(code) / f32(PLACES - 1u);
+        return Edge(true, max(place - HALF_WIDTH, 0.0), min(place + HALF_WIDTH, 1.0));
+    }
+    var pair = code - PLACES;
+    var near = 0u;
+    while near + APART < STEPS && pair > STEPS - APART - near {
+        pair -= STEPS - APART + 1u - near;
+        near++;
+    }
+    return Edge(code != OPEN, f32(near) / f32(STEPS), f32(near + APART + pair) / f32(STEPS));
 }
 
 fn turned(edge: Edge) -> Edge {
@@ -63,7 +78,8 @@ fn at_wall_end(
     let side = sides(edge, along);
     if side.x + side.y == 0.0 {
         let apart = edge.far - edge.near;
-        return Reach(vec4<f32>(0.0), !(apart >= 0.25 && away < apart));
+        let is_corner = apart > 4.0 * HALF_WIDTH && away < apart;
+        return Reach(vec4<f32>(0.0), !is_corner);
     }
     let others = plain(at) * (1.0 - first - second);
     return Reach(others + (1.0 - away) * (side.x * first + side.y * second), false);
