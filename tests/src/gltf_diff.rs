@@ -2,8 +2,8 @@
 //!
 //! Everything is compared by its content, not by where it lies: pictures and accessors by their bytes, the corners of
 //! triangles by all their attributes and morph targets, whatever the vertices' order is. The second file may say more:
-//! attributes, textures and what refers to them, elements at the end of lists, children of nodes. It shares no code with
-//! the writer or with the loader.
+//! attributes, textures and what refers to them, elements at the end of lists, children of nodes. It shares no code
+//! with the writer or with the loader.
 
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};

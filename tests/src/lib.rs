@@ -19,11 +19,11 @@ pub use oracle::Oracle;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use sunbake::atlas::{Layout, LayoutOrigin, SurfacePoint};
+use sunbake::atlas::SurfacePoint;
 use sunbake::disk::read::{BakedSet, read};
 use sunbake::maps::{Bits, PageMaps, stored_intervals};
 use sunbake::progress::Silent;
-use sunbake::scene::{Geometry, Mesh, Scene};
+use sunbake::scene::{Geometry, Scene};
 use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 use sunbake::sun::{DayRequest, SunArc, SunPath};
 use sunbake::trace::Tracer;
@@ -124,21 +124,10 @@ pub fn flipped(triangles: &[[Vec3; 3]]) -> Vec<[Vec3; 3]> {
 
 /// Writes a scene made by code as `NAME.glb` in a folder, without unique coordinates.
 pub fn write_scene(scene: &Scene, folder: &Path, name: &str) -> PathBuf {
-    let layouts: Vec<Layout> = scene.meshes.iter().map(layout_without_coordinates).collect();
     let file = folder.join(format!("{name}.glb"));
-    let written = sunbake::glb::write_glb(scene, &layouts, None).expect("a small scene");
-    std::fs::write(&file, written.bytes).expect("a folder to write in");
+    let written = sunbake::glb::write_plain(scene).expect("a small scene");
+    std::fs::write(&file, written).expect("a folder to write in");
     file
-}
-
-fn layout_without_coordinates(mesh: &Mesh) -> Layout {
-    let count = mesh.positions.len();
-    Layout {
-        origin: LayoutOrigin::Unwrapped,
-        vertices: (0..count as u32).collect(),
-        uvs: vec![glam::Vec2::ZERO; count],
-        indices: mesh.indices.clone(),
-    }
 }
 
 /// Midsummer at 40 degrees north.

@@ -62,7 +62,8 @@ fn cube(size: f32) -> (Vec<[f32; 3]>, Vec<u16>) {
 
 /// One file with nearly everything that could be lost: cut cubes with quantised colours, joints, morph targets (one of
 /// them sparse) and attributes of their own; primitives that share their vertices; a strip; points; degenerate
-/// triangles; a second scene; instances; a skin; an animation; lights; unknown extensions; pictures in a file beside it.
+/// triangles; a second scene; instances; a skin; an animation; lights; unknown extensions; pictures in files beside
+/// it.
 fn write_rich(folder: &Path) -> PathBuf {
     let mut made = Made::default();
     let (corners, faces) = cube(1.0);

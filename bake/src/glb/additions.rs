@@ -9,6 +9,8 @@ use std::borrow::Cow;
 
 /// What is added.
 pub(super) enum Additions<'a> {
+    /// Nothing.
+    Nothing,
     /// Texture coordinates: those of the layouts, which all instances of a mesh share; or, with occlusion textures,
     /// page coordinates of each instance.
     Coordinates { layouts: &'a [Layout], occlusion: Option<Occlusion<'a>> },
@@ -19,12 +21,13 @@ pub(super) enum Additions<'a> {
 impl Additions<'_> {
     /// Whether each instance of a mesh gets something of its own.
     pub fn is_per_instance(&self) -> bool {
-        !matches!(self, Self::Coordinates { occlusion: None, .. })
+        !matches!(self, Self::Nothing | Self::Coordinates { occlusion: None, .. })
     }
 
     /// Whether an instance gets anything.
     pub fn concern(&self, scene: &Scene, instance: usize) -> bool {
         match self {
+            Self::Nothing => false,
             Self::Coordinates { occlusion: Some(occlusion), .. } => occlusion.page(instance).is_some(),
             Self::Coordinates { .. } => scene.material(instance).alpha != Alpha::Invisible,
             Self::VertexVisibility { .. } => true,
@@ -35,7 +38,7 @@ impl Additions<'_> {
     pub fn layout(&self, scene: &Scene, mesh: usize) -> Cow<'_, Layout> {
         match self {
             Self::Coordinates { layouts, .. } => Cow::Borrowed(&layouts[mesh]),
-            Self::VertexVisibility { .. } => Cow::Owned(Layout::of_mesh(&scene.meshes[mesh])),
+            Self::Nothing | Self::VertexVisibility { .. } => Cow::Owned(Layout::of_mesh(&scene.meshes[mesh])),
         }
     }
 
@@ -46,7 +49,7 @@ impl Additions<'_> {
                 Cow::Owned(occlusion.page_uvs(scene, instance))
             }
             (Self::Coordinates { layouts, .. }, _) => Cow::Borrowed(&layouts[mesh].uvs),
-            (Self::VertexVisibility { .. }, _) => Cow::Borrowed(&[]),
+            (Self::Nothing | Self::VertexVisibility { .. }, _) => Cow::Borrowed(&[]),
         }
     }
 }

@@ -1,5 +1,6 @@
-//! Meshes: those of the file, with what was baked for their primitives. A mesh whose nodes need different data is copied
-//! for all of them but the first; so is one that other nodes draw, which were not baked, if its data are a node's own.
+//! Meshes: those of the file, with what was baked for their primitives. A mesh whose nodes need different data is
+//! copied for all of them but the first; so is one that other nodes draw, which were not baked, if its data are a
+//! node's own.
 
 use super::additions::Additions;
 use super::binary::Binary;
@@ -222,12 +223,13 @@ impl Writer<'_, '_> {
             *self.not_kept.entry(format!("{DRACO} is gone")).or_default() += 1;
         }
         match self.additions {
+            Additions::Nothing => BAKED_SET,
             Additions::Coordinates { .. } => self.add_coordinates(key, part, primitive, root),
             Additions::VertexVisibility { attribute, visibility } => {
                 let of_instance = part.instance.map_or(&[][..], |instance| &visibility[instance]);
                 let accessor = self.add_visibility(key, *attribute, of_instance);
                 primitive["attributes"][attribute.name()] = json!(accessor);
-                1
+                BAKED_SET
             }
         }
     }

@@ -78,6 +78,15 @@ pub fn write_glb(scene: &Scene, layouts: &[Layout], occlusion: Option<Occlusion>
     write(scene, &Additions::Coordinates { layouts, occlusion })
 }
 
+/// Writes a scene as it is, for instance one that was made by code.
+///
+/// # Errors
+///
+/// If the file would have 4 GiB or more.
+pub fn write_plain(scene: &Scene) -> Result<Vec<u8>, GlbTooLarge> {
+    Ok(write(scene, &Additions::Nothing)?.bytes)
+}
+
 /// Writes a scene with ambient visibility at its vertices (for each instance, one number per vertex of its mesh, 0 to
 /// 1) and without baked coordinates.
 ///

@@ -2,11 +2,11 @@
 //!
 //! Theory: a texel whose point lies inside a solid, or under something that lies on its surface, never sees the sun.
 //! Nobody sees it either, but a filter does, and would draw a dark line round what lies there. Its visible neighbours
-//! say what to show in its place; what only some of them see is left out. Neighbours behind walls say nothing: no filter
-//! blends across ([`crate::atlas::find_walls`]), and what looks like a solid may be a room without inner faces.
+//! say what to show in its place; what only some of them see is left out. Neighbours behind walls say nothing: no
+//! filter blends across ([`crate::atlas::find_walls`]), and what looks like a solid may be a room without inner faces.
 //!
-//! Practice: only texels that are hardly ever lit and have a lit neighbour are tested, by rays over the hemisphere: all of
-//! them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
+//! Practice: only texels that are hardly ever lit and have a lit neighbour are tested, by rays over the hemisphere: all
+//! of them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
 //! distance the backs of double-sided surfaces are walls of a room.)
 
 use crate::ambient::hemisphere_directions;

@@ -1,5 +1,5 @@
-//! Reports, and `scene.glb`, in a real browser. The harness is not the usual one: without Chromium every test is listed as ignored, and
-//! counted as skipped.
+//! Reports, and `scene.glb`, in a real browser. The harness is not the usual one: without Chromium every test is listed
+//! as ignored, and counted as skipped.
 
 mod a_stock_viewer_shows_the_same;
 mod compare_reports_work;
