@@ -4,8 +4,7 @@
 //! Points drawn evenly over all surfaces, at 24 times of a June day, played back with and without the maps of walls,
 //! against the exact engine at each point. *Leak* is the light shown where the truth has none, *shade* what is missing
 //! where the sun is seen: means over all points and times, in percent of the sun. *Worst* is the most light shown at a
-//! point that never sees the sun. Times of playback are of one thread, in turn; a bake's share is the time of finding
-//! walls as part of the whole.
+//! point that never sees the sun. Times of playback are of one thread, in turn.
 //!
 //! Options after `--`: `points=40000 density=10 scene=NAME`.
 
