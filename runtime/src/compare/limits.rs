@@ -18,6 +18,10 @@ pub enum Limited {
     Penumbra,
     /// Mean error outside of penumbras.
     Outside,
+    /// Mean visibility where the reference is dark.
+    Leak,
+    /// Mean shade where the reference is in full light.
+    Shade,
     /// One less the structural similarity of lit pictures.
     Dissimilarity,
     /// Milliseconds a frame.
@@ -27,13 +31,15 @@ pub enum Limited {
 }
 
 impl Limited {
-    const ALL: [(&'static str, Self); 9] = [
+    const ALL: [(&'static str, Self); 11] = [
         ("visibility", Self::Visibility),
         ("p99", Self::P99),
         ("worst", Self::Worst),
         ("wrong", Self::Wrong),
         ("penumbra", Self::Penumbra),
         ("outside", Self::Outside),
+        ("leak", Self::Leak),
+        ("shade", Self::Shade),
         ("dissimilarity", Self::Dissimilarity),
         ("frame_ms", Self::FrameMs),
         ("mib", Self::Mib),
@@ -53,6 +59,8 @@ impl Limited {
             Self::Wrong => error.wrong_share,
             Self::Penumbra => return error.penumbra,
             Self::Outside => error.outside,
+            Self::Leak => return error.false_light,
+            Self::Shade => return error.false_shade,
             Self::Dissimilarity => 1.0 - error.ssim,
             Self::FrameMs => technique.times.frame_ms,
             Self::Mib => technique.memory_bytes as f64 / f64::from(1 << 20),

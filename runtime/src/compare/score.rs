@@ -2,7 +2,8 @@
 //!
 //! Only pixels that show a surface count; otherwise the mean would depend on how much sky a camera sees. The *penumbra*
 //! is where the reference is neither lit nor dark; an error outside of it is a shadow in the wrong place, or a missing
-//! one. Structural similarity (Wang et al., "Image quality assessment: from error visibility to structural similarity",
+//! one. *False light* is what shines through walls, where the reference is all dark; *false shade* darkens what it
+//! shows in full light. Structural similarity (Wang et al., "Image quality assessment: from error visibility to structural similarity",
 //! *IEEE Transactions on Image Processing* 13, 2004) is taken of the lit pictures' luma as a display shows them, over
 //! windows of eight by eight pixels. NaN counts as an error of 1, and such pixels are counted.
 
@@ -32,6 +33,11 @@ pub struct Score {
     pub worst: f64,
     /// Share of pixels with an error above a half.
     pub wrong_share: f64,
+    /// Light where the reference has none: the mean visibility of pixels that are dark in it; null where none is.
+    pub false_light: Option<f64>,
+    /// Shade where the reference has none: the mean of 1 less the visibility of pixels that are lit in it; null where
+    /// none is.
+    pub false_shade: Option<f64>,
     /// Mean error where the reference sees from 2 to 98 hundredths of the sun; null where it has no such pixel.
     pub penumbra: Option<f64>,
     /// Mean error everywhere else.
@@ -50,6 +56,8 @@ pub struct Tally {
     errors: Vec<f32>,
     in_penumbra: (f64, u64),
     outside: (f64, u64),
+    in_shade: (f64, u64),
+    in_light: (f64, u64),
     not_numbers: u64,
     ssim: (f64, u64),
 }
@@ -68,6 +76,11 @@ impl Tally {
             let is_penumbra = (PENUMBRA[0]..=PENUMBRA[1]).contains(&reference);
             let part = if is_penumbra { &mut self.in_penumbra } else { &mut self.outside };
             *part = (part.0 + f64::from(error), part.1 + 1);
+            for (part, whole) in [(&mut self.in_shade, 0.0), (&mut self.in_light, 1.0)] {
+                if reference == whole {
+                    *part = (part.0 + f64::from(error), part.1 + 1);
+                }
+            }
         }
     }
 
@@ -82,6 +95,8 @@ impl Tally {
         self.errors.extend_from_slice(&other.errors);
         self.in_penumbra = sum(self.in_penumbra, other.in_penumbra);
         self.outside = sum(self.outside, other.outside);
+        self.in_shade = sum(self.in_shade, other.in_shade);
+        self.in_light = sum(self.in_light, other.in_light);
         self.ssim = sum(self.ssim, other.ssim);
         self.not_numbers += other.not_numbers;
     }
@@ -99,6 +114,8 @@ impl Tally {
             p99: percentile(&mut self.errors.clone(), 99, f32::total_cmp).map_or(0.0, f64::from),
             worst: f64::from(self.errors.iter().copied().fold(0.0, f32::max)),
             wrong_share: share(wrong),
+            false_light: (self.in_shade.1 > 0).then(|| mean(self.in_shade)),
+            false_shade: (self.in_light.1 > 0).then(|| mean(self.in_light)),
             penumbra: (self.in_penumbra.1 > 0).then(|| mean(self.in_penumbra)),
             outside: mean(self.outside),
             penumbra_share: share(self.in_penumbra.1),
@@ -151,8 +168,16 @@ mod tests {
     #[test]
     fn what_is_compared_with_itself_is_all_zeros() {
         let same = [0.0, 0.3, 1.0];
-        let expected =
-            Score { pixels: 3, penumbra: Some(0.0), penumbra_share: 1.0 / 3.0, ssim: 1.0, ..Score::default() };
+        let [false_light, false_shade, penumbra] = [Some(0.0); 3];
+        let expected = Score {
+            pixels: 3,
+            false_light,
+            false_shade,
+            penumbra,
+            penumbra_share: 1.0 / 3.0,
+            ssim: 1.0,
+            ..Score::default()
+        };
         assert_eq!(scored(&same, &same), expected);
         assert_eq!(Tally::default().score(), Score { ssim: 1.0, ..Score::default() });
     }
@@ -167,6 +192,16 @@ mod tests {
         visibility[7] = f32::NAN;
         let found = scored(&visibility, &[1.0; 50]);
         assert_eq!((found.not_numbers, found.worst, found.wrong_share), (1, 1.0, 0.02));
+    }
+
+    /// B6: a leak of less than a half is no wrong pixel, and is told all the same.
+    #[test]
+    fn light_in_the_shade_and_shade_in_the_light_are_told_apart() {
+        let leak = scored(&[0.4, 0.2, 0.9, 1.0], &[0.0, 0.0, 1.0, 0.5]);
+        assert!((leak.false_light.unwrap() - 0.3).abs() < 1e-6 && (leak.false_shade.unwrap() - 0.1).abs() < 1e-6);
+        assert_eq!(leak.wrong_share, 0.0);
+        let dark = scored(&[0.0; 2], &[0.0; 2]);
+        assert_eq!((dark.false_light, dark.false_shade), (Some(0.0), None));
     }
 
     #[test]

@@ -12,6 +12,8 @@ pub(super) fn results(report: &Report) -> String {
         Column::numbers("wrong", "% of pixels", "Error above a half: sun for shade, or shade for sun"),
         Column::numbers("penumbra", "mean", "Mean error where the reference sees a part of the sun"),
         Column::numbers("outside", "mean", "Mean error everywhere else"),
+        Column::numbers("false light", "mean", "Visibility where the reference is all dark: light through walls"),
+        Column::numbers("false shade", "mean", "Shade where the reference is in full light"),
         Column::numbers("similarity", "SSIM", "Structural similarity of the lit pictures, 1 for equal ones"),
         Column::numbers(
             "centre",
@@ -55,6 +57,8 @@ fn result(index: usize, technique: &TechniqueEntry) -> Row {
             percent(error.wrong_share),
             or_none(error.penumbra.map(number)),
             number(error.outside),
+            or_none(error.false_light.map(number)),
+            or_none(error.false_shade.map(number)),
             Cell::number(&format!("{:.4}", error.ssim), error.ssim),
             or_none(technique.hard_error.map(|error| percent(error.wrong_share))),
             number(technique.times.frame_ms),

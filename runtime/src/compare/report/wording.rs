@@ -9,7 +9,7 @@ impl Report {
     pub fn text(&self) -> String {
         let name = self.techniques.iter().map(|technique| technique.name.len()).max().unwrap_or(0).max(9);
         let mut text = format!(
-            "{} against {}, {} frames of {}x{}, on {}\n\n{:name$}  {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
+            "{} against {}, {} frames of {}x{}, on {}\n\n{:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
             self.scene.name,
             self.reference.name,
             self.cameras.len() * self.times.len(),
@@ -20,6 +20,8 @@ impl Report {
             "mean",
             "p99",
             "wrong",
+            "leak",
+            "shade",
             "ssim",
             "frame",
             "memory",
@@ -28,11 +30,13 @@ impl Report {
         for technique in &self.techniques {
             let error = &technique.error;
             text += &format!(
-                "{:name$}  {:>8.5} {:>8.4} {:>6.2} % {:>8.5} {:>11} {:>10} {:>10}\n",
+                "{:name$}  {:>8.5} {:>8.4} {:>6.2} % {:>8.5} {:>8.5} {:>8.5} {:>11} {:>10} {:>10}\n",
                 technique.name,
                 error.mean,
                 error.p99,
                 error.wrong_share * 100.0,
+                error.false_light.unwrap_or(0.0),
+                error.false_shade.unwrap_or(0.0),
                 error.ssim,
                 with_unit(technique.times.frame_ms, "ms"),
                 with_unit(technique.memory_bytes as f64, "bytes"),
