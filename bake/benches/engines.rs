@@ -290,7 +290,7 @@ fn density_for(scene: &Scene, geometry: &Geometry, texels: f64) -> Density {
         let [a, b, c] = geometry.triangles[i].map(|v| v.as_dvec3());
         0.5 * (b - a).cross(c - a).length()
     };
-    let total: f64 = (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(scene, i)).map(area).sum();
+    let total: f64 = (0..geometry.triangles.len()).filter(|&i| geometry.receives(scene, i)).map(area).sum();
     Density::TexelsPerMetre((texels / total).sqrt())
 }
 

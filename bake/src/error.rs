@@ -10,7 +10,7 @@ use crate::disk::read::ReadError;
 use crate::glb::GlbTooLarge;
 use crate::lamp::{LampError, LampFileError};
 use crate::remedy::{Remedy, Setting};
-use crate::scene::LoadError;
+use crate::scene::{LoadError, ObjectError, Wish};
 use crate::sun::{ClockError, DateError, DayError, KeyedError, LightError};
 
 /// Which kind of failure an error is.
@@ -55,7 +55,7 @@ impl Explain for BakeError {
             Self::Atlas(error) => error.class(),
             Self::TooLarge(error) => error.class(),
             Self::Write(error) => error.class(),
-            Self::TwoLamps | Self::LampEngine(_) | Self::NothingNamed { .. } => ErrorClass::Usage,
+            Self::TwoLamps | Self::LampEngine(_) | Self::Objects(_) => ErrorClass::Usage,
             Self::Memory { .. } => ErrorClass::BadInput,
             Self::Threads { .. } | Self::NoExr => ErrorClass::Unavailable,
             Self::Cancelled => ErrorClass::Cancelled,
@@ -76,7 +76,8 @@ impl Explain for BakeError {
                 Remedy::Set(Setting::Engine, "exact".into()),
                 Remedy::Set(Setting::Engine, "rays:N".into()),
             ])),
-            Self::NothingNamed { .. } => Some(Remedy::Change(Setting::LeaveOut)),
+            Self::Objects(ObjectError::NothingNamed { wish, .. }) => Some(Remedy::Change(setting_of(*wish))),
+            Self::Objects(_) => None,
             Self::Memory { smaller, .. } => {
                 let smaller = smaller.iter().map(|&setting| Remedy::Lower(setting));
                 Some(Remedy::AnyOf(smaller.chain([Remedy::Raise(Setting::MaxMemory)]).collect()))
@@ -84,6 +85,16 @@ impl Explain for BakeError {
             Self::Threads { .. } => Some(Remedy::Lower(Setting::Threads)),
             Self::NoExr => Some(Remedy::any([Remedy::Omit(Setting::Exr), Remedy::Omit(Setting::LossMap)])),
         }
+    }
+}
+
+/// The setting that holds a wish.
+fn setting_of(wish: Wish) -> Setting {
+    match wish {
+        Wish::LeaveOut => Setting::LeaveOut,
+        Wish::NoCast => Setting::NoCast,
+        Wish::NoReceive => Setting::NoReceive,
+        Wish::Density => Setting::ObjectDensity,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Progress of a bake, reported to the caller.
 
+use crate::warning::Warning;
+
 /// A step of a bake, in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BakeStep {
@@ -45,6 +47,9 @@ pub trait Progress: Sync {
     fn start(&self, step: BakeStep, total: u64);
     /// Adds to the count of the current step.
     fn advance(&self, by: u64);
+    /// Something that the user should know before the long part of the bake. It is told again at its end, with the
+    /// other warnings of [`crate::BakeReport`].
+    fn warn(&self, _warning: &Warning) {}
     /// Whether the bake should stop. It then fails with [`crate::BakeError::Cancelled`] and leaves nothing behind.
     fn is_cancelled(&self) -> bool {
         false

@@ -35,8 +35,14 @@ pub enum Setting {
     Threads,
     /// Memory that may be planned for.
     MaxMemory,
-    /// Materials that are left out.
+    /// Objects that are left out.
     LeaveOut,
+    /// Objects that cast no shadow.
+    NoCast,
+    /// Objects that nothing shades.
+    NoReceive,
+    /// Texels a metre of an object.
+    ObjectDensity,
     /// Where on Earth the scene lies.
     Place,
     /// The date of the sun's day.

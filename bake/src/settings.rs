@@ -4,6 +4,7 @@ use crate::ambient::AmbientSettings;
 use crate::atlas::Density;
 use crate::lamp::LampPath;
 use crate::maps::Bits;
+use crate::scene::ObjectWishes;
 use crate::sun::{DayRequest, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::{BisectEngine, Engine, ExactEngine, LampEngine, LampRays, RayEngine};
@@ -16,9 +17,8 @@ pub struct BakeSettings {
     /// A lamp beside the sun: the text of its path file, see [`crate::lamp::parse_lamp`]. Takes a light's time and
     /// bytes.
     pub lamp: Option<String>,
-    /// What is neither drawn nor baked and casts nothing: outline hulls, sky domes, collision shells. Names as
-    /// [`crate::scene::Selection`] reads them; usually none.
-    pub leave_out: Vec<String>,
+    /// What is asked for objects by name; usually nothing.
+    pub objects: ObjectWishes,
     /// Density of texels. Time and bytes grow with the number of texels, so with its square.
     pub density: Density,
     /// Edge of a square page, 64 to 16384. Larger pages pack better; some hardware stops at 8192.
@@ -187,7 +187,7 @@ impl BakeSettings {
         Self {
             sun,
             lamp: None,
-            leave_out: Vec::new(),
+            objects: ObjectWishes::default(),
             density: Density::Pages(1),
             page_size_texels: 2048,
             padding_texels: 2,

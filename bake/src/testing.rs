@@ -2,7 +2,7 @@
 
 pub mod atlas;
 
-use crate::scene::{Alpha, Dropped, Image, Instance, Material, Mesh, Node, Scene, Source, TextureRef};
+use crate::scene::{Alpha, Dropped, Image, Instance, Material, Mesh, Node, Role, Scene, Source, TextureRef};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 /// Builds a [`Scene`] without a file.
@@ -72,6 +72,7 @@ impl SceneBuilder {
                 mesh: scene.meshes.len() - 1,
                 bake_from_object: matrix,
                 is_mirrored: matrix.determinant() < 0.0,
+                role: Role::default(),
             });
         }
         self
@@ -122,6 +123,7 @@ pub fn opaque() -> Material {
         alpha: Alpha::Opaque,
         is_double_sided: false,
         is_unlit: false,
+        is_clear: false,
     }
 }
 

@@ -4,7 +4,7 @@
 use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
-use crate::scene::{Geometry, LoadError, LoadLimits, Scene};
+use crate::scene::{Geometry, LoadError, LoadLimits};
 use crate::trace::Tracer;
 use crate::visibility::BuriedPoints;
 use glam::DVec3;
@@ -79,26 +79,20 @@ pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadE
             samples.into_iter().map(move |sample| (page, sample))
         })
         .collect();
-    let describe = |&(page, sample): &(usize, Sample)| describe(set, &scene, &geometry, &tracer, page, &sample);
+    let texel_m = atlas.texel_widths_m(&scene);
+    let buried = BuriedPoints { scene: &scene, geometry: &geometry, tracer: &tracer, texel_m };
+    let describe = |&(page, sample): &(usize, Sample)| describe(set, &buried, page, &sample);
     Ok(pick(covered.len(), count, seed).iter().map(|&i| describe(&covered[i])).collect())
 }
 
-fn describe(
-    set: &BakedSet,
-    scene: &Scene,
-    geometry: &Geometry,
-    tracer: &Tracer,
-    page: usize,
-    sample: &Sample,
-) -> Texel {
+fn describe(set: &BakedSet, buried: &BuriedPoints, page: usize, sample: &Sample) -> Texel {
+    let &BuriedPoints { scene, geometry, tracer, .. } = buried;
     let maps = &set.pages[page];
     let point = atlas::surface_point(scene, geometry, sample);
     let world = |p: DVec3| (p + scene.centre_m).to_array();
     let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
     let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
     let texel = sample.texel as usize;
-    let texel_m = 1.0 / set.manifest.scene.texels_per_metre;
-    let buried = BuriedPoints { scene, geometry, tracer, texel_m };
     let is_filled = lanes.iter().any(|lane| !lane.lit.is_empty()) && buried.is_buried(&point);
     let front = maps.ambient.as_ref().map(|ambient| &ambient.front);
     let back = maps.ambient.as_ref().and_then(|ambient| ambient.back.as_ref());

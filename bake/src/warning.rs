@@ -103,6 +103,43 @@ pub enum Warning {
         /// The meshes' labels, each once.
         meshes: Vec<String>,
     },
+    /// An object alone hides the sun from much of the rest.
+    #[error(
+        "{} alone hides the sun from {:.0} % of what would see it; if it is a sky dome, an outline, a collision shell \
+         or water, it should cast no shadow",
+        .0.object,
+        100.0 * .0.share
+    )]
+    Occluder(Occluder),
+    /// Clear surfaces let the light through.
+    #[error(
+        "light passes {} as if {} not there, untinted, for {} or blends below one half; where it should be stopped, \
+         set sunbake_no_cast to false in the extras",
+        first_of(materials, 3),
+        if materials.len() == 1 { "it were" } else { "they were" },
+        if materials.len() == 1 { "it transmits" } else { "each of them transmits" }
+    )]
+    Clear {
+        /// The materials' labels, each once.
+        materials: Vec<String>,
+    },
+    /// Objects have hardly any texels.
+    #[error(
+        "{} narrower than two texels of {}: {}; shadows on them are blurred or lost",
+        if *count == 1 { "an object is".to_owned() } else { format!("{count} objects are") },
+        length(*texel_m),
+        first_of(objects, 3) + if *count > objects.len() { " and others" } else { "" }
+    )]
+    Narrow {
+        /// How many.
+        count: usize,
+        /// Texts that select the narrowest of them ([`crate::scene::Selection`]), at least one.
+        objects: Vec<String>,
+        /// Width of a texel of the narrowest, metres.
+        texel_m: f64,
+        /// A density at which the narrowest would be eight texels wide, texels a metre.
+        texels_per_metre: f64,
+    },
     /// Nearly nothing sees the sun.
     #[error(
         "{:.0} % of the texels never see the sun; if that is wrong, something may enclose the scene, as an outline \
@@ -151,6 +188,34 @@ pub enum Warning {
     },
 }
 
+/// What may hide the sun by mistake.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Occluder {
+    /// What it is called: `node "SkySphere"`, `material 3`.
+    pub object: String,
+    /// A text that selects it ([`crate::scene::Selection`]).
+    pub name: String,
+    /// Share of the light of all else that it alone takes, 0 to 1.
+    pub share: f64,
+}
+
+/// A value as a shell takes it.
+fn in_quotes(value: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-:.=/+".contains(c);
+    match value.chars().all(is_plain) && !value.is_empty() {
+        true => value.to_owned(),
+        false => format!("'{}'", value.replace('\'', "'\\''")),
+    }
+}
+
+/// A length with its unit.
+fn length(metres: f64) -> String {
+    match metres {
+        0.0..1.0 => format!("{:.0} cm", 100.0 * metres),
+        _ => format!("{metres:.1} m"),
+    }
+}
+
 /// Most layers that may be asked for.
 const MOST_LAYERS: u64 = 16;
 /// Most rays of sky that may be asked for.
@@ -160,7 +225,11 @@ impl Warning {
     /// What to do about it, if a setting can help.
     pub fn remedy(&self) -> Option<Remedy> {
         match self {
-            Self::Scene(_) | Self::NotKept(_) | Self::PaddingReduced { .. } | Self::Unwrapped { .. } => None,
+            Self::Scene(_)
+            | Self::NotKept(_)
+            | Self::Clear { .. }
+            | Self::PaddingReduced { .. }
+            | Self::Unwrapped { .. } => None,
             Self::NoSunrise { .. } => Some(Remedy::Change(Setting::Date)),
             Self::PageEnlarged { used_texels, .. } => Some(Remedy::any([
                 Remedy::Set(Setting::PageSize, used_texels.to_string()),
@@ -170,6 +239,17 @@ impl Warning {
                 Some(Remedy::Raise(Setting::PageSize))
             }
             Self::Dark { .. } => Some(Remedy::Set(Setting::LeaveOut, "MATERIAL".into())),
+            Self::Occluder(Occluder { name, .. }) => {
+                let name = in_quotes(name);
+                Some(Remedy::any(
+                    [Setting::LeaveOut, Setting::NoCast].map(|setting| Remedy::Set(setting, name.clone())),
+                ))
+            }
+            Self::Narrow { objects, texels_per_metre, .. } => {
+                let name = objects.first().map(String::as_str).unwrap_or_default();
+                let value = format!("{name}={}", texels_per_metre.ceil());
+                Some(Remedy::Set(Setting::ObjectDensity, in_quotes(&value)))
+            }
             Self::Merged { layer_cap, .. } if *layer_cap as u64 >= MOST_LAYERS => None,
             Self::Merged { needed_layers, .. } => {
                 Some(Remedy::Set(Setting::Layers, needed_layers.min(&MOST_LAYERS).to_string()))

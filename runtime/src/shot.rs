@@ -25,7 +25,7 @@ impl<'a> Shot<'a> {
     pub fn hits(&self) -> &[Option<Hit>] {
         self.hits.get_or_init(|| {
             // The tracer is built before the parallel loop uses it.
-            self.stage.tracer();
+            self.stage.eye_tracer();
             let eye_m = self.view.eye_m.as_dvec3();
             let width = self.view.size[0] as usize;
             (0..self.view.pixel_count())

@@ -75,7 +75,7 @@ impl<'a> Oracle<'a> {
         Self {
             here,
             run_up_m: here.tracer.run_up_m(),
-            casters: (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(&here.scene, i)).map(caster).collect(),
+            casters: (0..geometry.triangles.len()).filter(|&i| geometry.casts(&here.scene, i)).map(caster).collect(),
             arcs: path.arcs().iter().map(arc).collect(),
             suns: (0..count).map(|sun| path.direction(t(sun))).collect(),
         }

@@ -89,7 +89,19 @@ impl<'a> BuriedTest<'a> {
         if !is_back(hit.triangle) {
             return false;
         }
-        let front = self.tracer.closest_hit_where(origin_m, &Direction::new(direction), |t| !is_back(t));
-        front.is_none_or(|front| front.distance_m > hit.distance_m * (1.0 + COINCIDENT) + self.tracer.run_up_m())
+        back_comes_first(self.tracer, origin_m, &Direction::new(direction), hit.distance_m, is_back)
     }
+}
+
+/// Whether the nearest surface along a ray, a back at this distance, has no front where it lies. Of doubled faces with
+/// both windings the front counts.
+pub(crate) fn back_comes_first(
+    tracer: &Tracer,
+    origin_m: DVec3,
+    direction: &Direction,
+    back_distance_m: f64,
+    is_back: impl Fn(u32) -> bool,
+) -> bool {
+    let front = tracer.closest_hit_where(origin_m, direction, |triangle| !is_back(triangle));
+    front.is_none_or(|front| front.distance_m > back_distance_m * (1.0 + COINCIDENT) + tracer.run_up_m())
 }

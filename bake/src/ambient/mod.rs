@@ -37,6 +37,7 @@ mod point;
 mod seams;
 mod vertices;
 
+pub(crate) use buried::back_comes_first;
 pub(crate) use directions::hemisphere_directions;
 pub use estimate::{AmbientEngine, Estimate, Estimates, solve_ambient};
 pub use harmonics::Coefficients;

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 const PULL: f64 = 0.125;
 
 /// For each instance, the ambient visibility of each vertex of its mesh, 0 to 1; of double-sided surfaces, that of the
-/// side with more. Instances that are air have 1. `on_progress` gets the number of positions that were done and returns
+/// side with more. Instances that take no shadows have 1. `on_progress` gets the number of positions that were done and returns
 /// false to stop; then there is no answer. The second value is the number of rays traced.
 pub fn ambient_visibility_of_vertices(
     engine: &AmbientEngine,
@@ -69,7 +69,7 @@ fn gather(
     let mesh = &scene.meshes[scene.instances[instance].mesh];
     let first = geometry.first_triangle[instance] as usize;
     let mut of_vertex = vec![u32::MAX; mesh.positions.len()];
-    if !geometry.is_solid_instance(scene, instance) {
+    if !scene.receives(instance) {
         return of_vertex;
     }
     let mut known: HashMap<[u32; 6], u32> = HashMap::new();

@@ -22,10 +22,27 @@ use rayon::prelude::*;
 /// A mesh to be placed, and all its instances.
 pub(super) struct AtlasMesh {
     pub form: MeshLayout,
-    /// For each instance: its index in the scene, and metres per unit of object space.
-    pub instances: Vec<(usize, f64)>,
+    pub instances: Vec<AtlasInstance>,
     /// Share of the scene's density that this mesh gets: 1, or less if it would not fit a page otherwise.
     pub share: f64,
+}
+
+/// An instance that gets texels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AtlasInstance {
+    /// Index in the scene.
+    pub index: usize,
+    /// Metres per unit of object space: the root of the ratio of areas.
+    pub metres_per_unit: f64,
+    /// Texels a metre, if not the scene's.
+    pub own_density: Option<f64>,
+}
+
+impl AtlasInstance {
+    /// Size of a unit of object space in texels, as metres of a scene of this density.
+    fn scale(&self, texels_per_metre: f64) -> f64 {
+        self.metres_per_unit * self.own_density.map_or(1.0, |own| own / texels_per_metre)
+    }
 }
 
 /// How a mesh is laid out.
@@ -90,16 +107,50 @@ pub(super) struct Arrangement<'a> {
     pub items: &'a [AtlasMesh],
     pub page_size_texels: u32,
     pub padding_texels: u32,
+    /// Share of every density that is given.
+    pub share: f64,
 }
 
 impl AtlasMesh {
     /// Surface area in the scene, over all instances.
     pub fn area_m2(&self) -> f64 {
+        self.instances.iter().map(|instance| self.area_of_instance_m2(instance)).sum()
+    }
+
+    /// Surface area of the instances that have the scene's density, and texels of those that have their own.
+    pub fn area_and_own_texels(&self) -> (f64, f64) {
+        let add = |(area_m2, texels): (f64, f64), (of_part_m2, own): (f64, Option<f64>)| match own {
+            Some(own) => (area_m2, texels + of_part_m2 * own * own),
+            None => (area_m2 + of_part_m2, texels),
+        };
+        let parts = self.instances.iter().flat_map(|instance| self.parts(instance));
+        parts.fold((0.0, 0.0), add)
+    }
+
+    /// Area of an instance's parts in square metres, each with its density, if that is not the scene's.
+    fn parts(&self, instance: &AtlasInstance) -> Vec<(f64, Option<f64>)> {
+        match &self.form {
+            MeshLayout::Charts(charts) if charts.has_own_densities() => {
+                let square_m = instance.metres_per_unit * instance.metres_per_unit;
+                let own = |chart: usize| charts.own_density(chart).or(instance.own_density);
+                charts.areas().enumerate().map(|(chart, area)| (area * square_m, own(chart))).collect()
+            }
+            _ => vec![(self.area_of_instance_m2(instance), instance.own_density)],
+        }
+    }
+
+    /// About how many texels it gets in a scene of this density.
+    pub fn texels(&self, texels_per_metre: f64) -> f64 {
+        let (area_m2, own_texels) = self.area_and_own_texels();
+        area_m2 * texels_per_metre * texels_per_metre + own_texels
+    }
+
+    fn area_of_instance_m2(&self, instance: &AtlasInstance) -> f64 {
         let object = match &self.form {
             MeshLayout::Charts(charts) => charts.area(),
             MeshLayout::FileLayout(given) => given.uv_area * given.object_per_uv * given.object_per_uv,
         };
-        object * self.instances.iter().map(|(_, k)| k * k).sum::<f64>()
+        object * instance.metres_per_unit * instance.metres_per_unit
     }
 
     /// Number of charts, independent of the number of instances. A layout from the file counts as one.
@@ -114,8 +165,8 @@ impl AtlasMesh {
         matches!(self.form, MeshLayout::Charts(_)) && self.instances.len() == 1
     }
 
-    fn scales(&self) -> Vec<f64> {
-        self.instances.iter().map(|i| i.1).collect()
+    fn scales(&self, texels_per_metre: f64) -> Vec<f64> {
+        self.instances.iter().map(|instance| instance.scale(texels_per_metre)).collect()
     }
 }
 
@@ -142,9 +193,9 @@ impl Arrangement<'_> {
         tries.into_iter().find_map(|pages| self.at_density(texels_per_metre, pages))
     }
 
-    /// Whether each instance of one mesh fits a page by itself.
-    pub fn fits_alone(&self, item: usize, texels_per_metre: f64) -> bool {
-        let alone = Arrangement { items: std::slice::from_ref(&self.items[item]), ..*self };
+    /// Whether each instance of one mesh fits a page by itself, at this share of the densities.
+    pub fn fits_alone(&self, item: usize, texels_per_metre: f64, share: f64) -> bool {
+        let alone = Arrangement { items: std::slice::from_ref(&self.items[item]), share, ..*self };
         let instances = self.items[item].instances.len() as u32;
         alone.at_density(texels_per_metre, instances).is_some()
     }
@@ -164,8 +215,7 @@ impl Arrangement<'_> {
 
     /// Tiles, and the groups of pieces to be packed.
     fn groups(&self, texels_per_metre: f64) -> (Vec<Option<Tile>>, Vec<PieceGroup>) {
-        let of_item =
-            |(index, item): (usize, &AtlasMesh)| self.groups_of_mesh(index, item, texels_per_metre * item.share);
+        let of_item = |(index, item): (usize, &AtlasMesh)| self.groups_of_mesh(index, item, texels_per_metre);
         let (tiles, groups): (Vec<_>, Vec<_>) = self.items.par_iter().enumerate().map(of_item).unzip();
         let measured = |pieces: Vec<Piece>| {
             let texels = pieces.iter().map(|p| p.shape.area()).sum();
@@ -175,7 +225,8 @@ impl Arrangement<'_> {
     }
 
     fn groups_of_mesh(&self, item: usize, what: &AtlasMesh, texels_per_metre: f64) -> (Option<Tile>, Vec<Vec<Piece>>) {
-        let (padding, scales) = (self.padding_texels, what.scales());
+        let (padding, scales) = (self.padding_texels, what.scales(texels_per_metre));
+        let texels_per_metre = texels_per_metre * what.share * self.share;
         let limit_texels = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
         let rectangles = |contents: Vec<DVec2>| {
             let piece = |(instance, content): (usize, DVec2)| {
@@ -193,7 +244,11 @@ impl Arrangement<'_> {
             }
             MeshLayout::Charts(charts) if what.has_loose_charts() => {
                 let piece = |(chart, &size): (usize, &DVec2)| {
-                    let chart_box = ChartBox::new(size, texels_per_metre * scales[0], limit_texels);
+                    let density = match charts.own_density(chart) {
+                        Some(own) => own * what.instances[0].metres_per_unit * what.share * self.share,
+                        None => texels_per_metre * scales[0],
+                    };
+                    let chart_box = ChartBox::new(size, density, limit_texels);
                     let shape = chart_box.shape(charts, chart, padding);
                     Piece { shape, item, kind: PieceKind::Chart(chart, chart_box) }
                 };
@@ -247,7 +302,7 @@ impl AtlasPlan {
                         (instance, content / page_texels, corner / page_texels)
                     }
                 };
-                placements[item.instances[instance].0] =
+                placements[item.instances[instance].index] =
                     Placement { page: page as u32, scale: scale.as_vec2(), offset: offset.as_vec2() };
             }
         }

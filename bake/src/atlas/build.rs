@@ -1,13 +1,14 @@
 //! Builds an atlas: check the file's own layouts, unwrap the other meshes, find the density, place everything.
 
-use super::arrange::{AtlasMesh, AtlasPlan, MeshLayout};
+use super::arrange::{AtlasInstance, AtlasMesh, AtlasPlan, MeshLayout};
 use super::error::AtlasError;
 use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::search::{MOST_PAGES, find_plan};
 use super::unwrap::{self, Charts};
+use super::zones::Zones;
 use super::{Atlas, AtlasSettings, Density, FILE_SET, Layout, LayoutOrigin, Placement};
 use super::{existing, measure, shared};
-use crate::scene::{Alpha, Scene};
+use crate::scene::Scene;
 use rayon::prelude::*;
 
 /// Gives every instance its own texels. `progress` gets the fraction done (0 to 1) and returns false to stop.
@@ -21,10 +22,13 @@ pub fn build(
     check(settings)?;
     let meter = ProgressMeter::new(progress);
     let drawn = drawn_instances(scene);
-    if let Some(atlas) = shared::shared_square(scene, settings, &drawn) {
+    let zones = Zones::new(scene);
+    if zones.is_empty()
+        && let Some(atlas) = shared::shared_square(scene, settings, &drawn)
+    {
         return Ok(atlas);
     }
-    let mut items = make_meshes(scene, settings, &drawn, &meter)?;
+    let mut items = make_meshes(scene, settings, &drawn, &zones, &meter)?;
     loop {
         let mut warnings: Vec<_> = measure::refusal_warning(scene, settings, &items).into_iter().collect();
         let plan = find_plan(settings, &mut items, &mut warnings, &meter)?;
@@ -36,8 +40,8 @@ pub fn build(
             return Ok(atlas);
         }
         for item in crowded {
-            let mesh = scene.instances[items[item].instances[0].0].mesh;
-            items[item].form = MeshLayout::Charts(unwrap_mesh(scene, mesh, &meter)?);
+            let mesh = scene.instances[items[item].instances[0].index].mesh;
+            items[item].form = MeshLayout::Charts(unwrap_mesh(scene, mesh, &drawn[mesh], &zones, &meter)?);
         }
     }
 }
@@ -61,9 +65,8 @@ fn check(settings: &AtlasSettings) -> Result<(), AtlasError> {
     }
 }
 
-/// For each mesh, the instances that get texels, each with its metres per unit of object space (root of the area
-/// ratio).
-fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
+/// For each mesh, the instances that get texels.
+fn drawn_instances(scene: &Scene) -> Vec<Vec<AtlasInstance>> {
     let scale = |&index: &usize| {
         let instance = &scene.instances[index];
         let mesh = &scene.meshes[instance.mesh];
@@ -82,14 +85,14 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
         }
     };
     let solid: Vec<usize> = (0..scene.instances.len())
-        .filter(|&i| {
-            scene.material(i).alpha != Alpha::Invisible && scene.meshes[scene.instances[i].mesh].triangle_count() > 0
-        })
+        .filter(|&i| scene.receives(i) && scene.meshes[scene.instances[i].mesh].triangle_count() > 0)
         .collect();
     let scales: Vec<f64> = solid.par_iter().map(scale).collect();
     let mut drawn = vec![Vec::new(); scene.meshes.len()];
-    for (index, scale) in solid.into_iter().zip(scales) {
-        drawn[scene.instances[index].mesh].push((index, scale));
+    for (index, metres_per_unit) in solid.into_iter().zip(scales) {
+        let instance = &scene.instances[index];
+        let own_density = instance.role.texels_per_metre;
+        drawn[instance.mesh].push(AtlasInstance { index, metres_per_unit, own_density });
     }
     drawn
 }
@@ -98,7 +101,8 @@ fn drawn_instances(scene: &Scene) -> Vec<Vec<(usize, f64)>> {
 fn make_meshes(
     scene: &Scene,
     settings: &AtlasSettings,
-    drawn: &[Vec<(usize, f64)>],
+    drawn: &[Vec<AtlasInstance>],
+    zones: &Zones,
     meter: &ProgressMeter,
 ) -> Result<Vec<AtlasMesh>, AtlasError> {
     let meshes: Vec<usize> = (0..drawn.len()).filter(|&m| !drawn[m].is_empty()).collect();
@@ -108,7 +112,7 @@ fn make_meshes(
         let given = settings.keeps_existing.then(|| existing::check_own_rectangle(&scene.meshes[mesh]).ok()).flatten();
         let form = match given {
             Some(given) => MeshLayout::FileLayout(given),
-            None => MeshLayout::Charts(unwrap_mesh(scene, mesh, meter)?),
+            None => MeshLayout::Charts(unwrap_mesh(scene, mesh, &drawn[mesh], zones, meter)?),
         };
         let count = scene.meshes[mesh].triangle_count();
         let done = done.fetch_add(count, std::sync::atomic::Ordering::Relaxed) + count;
@@ -118,8 +122,24 @@ fn make_meshes(
     meshes.par_iter().map(item).collect()
 }
 
-fn unwrap_mesh(scene: &Scene, mesh: usize, meter: &ProgressMeter) -> Result<Charts, AtlasError> {
-    unwrap::unwrap(&scene.meshes[mesh], &|| meter.reach(0.0)).ok_or(AtlasError::Cancelled)
+/// A mesh that one node draws is unwrapped with the zones that it lies in.
+fn unwrap_mesh(
+    scene: &Scene,
+    mesh: usize,
+    drawn: &[AtlasInstance],
+    zones: &Zones,
+    meter: &ProgressMeter,
+) -> Result<Charts, AtlasError> {
+    let keep_going = || meter.reach(0.0);
+    let densities = match drawn {
+        [one] if !zones.is_empty() => zones.densities(scene, one.index),
+        _ => Vec::new(),
+    };
+    let charts = match densities.iter().any(Option::is_some) {
+        true => unwrap::unwrap_apart(&scene.meshes[mesh], &densities, &keep_going),
+        false => unwrap::unwrap(&scene.meshes[mesh], &keep_going),
+    };
+    charts.ok_or(AtlasError::Cancelled)
 }
 
 /// Turns a plan into the atlas.
@@ -128,7 +148,7 @@ fn assemble(scene: &Scene, items: &[AtlasMesh], plan: &AtlasPlan) -> Atlas {
     plan.write_placements(items, &mut placements);
     let mut layouts: Vec<Option<Layout>> = vec![None; scene.meshes.len()];
     for (item, uvs) in items.iter().zip(plan.layout_uvs(items)) {
-        let mesh = scene.instances[item.instances[0].0].mesh;
+        let mesh = scene.instances[item.instances[0].index].mesh;
         layouts[mesh] = Some(match &item.form {
             MeshLayout::FileLayout(_) => Layout::of_file(&scene.meshes[mesh], FILE_SET),
             MeshLayout::Charts(charts) => Layout {

@@ -16,10 +16,15 @@ pub enum AtlasError {
         requirement: &'static str,
     },
     /// The requested density needs too many texels.
-    #[error("{density_per_metre} texels a metre make about {texels} texels, but at most {most} are allowed")]
+    #[error(
+        "the density makes about {texels} texels, {of_instance} of them for the mesh of instance {instance}, but at \
+         most {most} are allowed"
+    )]
     TooDense {
-        /// Requested density, in texels per metre.
-        density_per_metre: f64,
+        /// The first instance ([`crate::scene::Scene::instances`]) of the mesh that asks for most of them.
+        instance: usize,
+        /// How many it asks for, with the mesh's other instances.
+        of_instance: u64,
         /// Approximate number of texels needed.
         texels: u64,
         /// Most texels allowed.

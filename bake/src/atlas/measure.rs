@@ -31,6 +31,27 @@ fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
     triangles.sum::<f64>() * scale.x * scale.y
 }
 
+impl Atlas {
+    /// Width of each instance's texels, metres; huge where it has none.
+    pub fn texel_widths_m(&self, scene: &Scene) -> Vec<f64> {
+        let density = |instance: usize| self.texels_per_metre_of(scene, instance).max(f64::MIN_POSITIVE);
+        (0..scene.instances.len()).into_par_iter().map(|instance| 1.0 / density(instance)).collect()
+    }
+
+    /// Density of an instance's texels: the root of its covered texels over its area. 0 for one without texels.
+    pub fn texels_per_metre_of(&self, scene: &Scene, instance: usize) -> f64 {
+        let place = &scene.instances[instance];
+        let mesh = &scene.meshes[place.mesh];
+        let corner = |index: u32| place.bake_from_object.transform_vector3(mesh.positions[index as usize].as_dvec3());
+        let areas = mesh.indices.chunks_exact(3).map(|t| {
+            let [a, b, c] = [0, 1, 2].map(|k| corner(t[k]));
+            (b - a).cross(c - a).length() * 0.5
+        });
+        let square_m: f64 = areas.sum();
+        if square_m > 0.0 { (texels_of_instance(scene, self, instance) / square_m).sqrt() } else { 0.0 }
+    }
+}
+
 /// A warning if some meshes did not get the requested density.
 pub(super) fn fit_warning(
     scene: &Scene,
@@ -40,12 +61,14 @@ pub(super) fn fit_warning(
 ) -> Option<Warning> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
     let reached = |item: &AtlasMesh| {
-        let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.0)).sum();
+        let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.index)).sum();
         (texels / item.area_m2()).sqrt()
     };
-    let short: Vec<_> = items.iter().map(|i| (reached(i), i)).filter(|(d, _)| *d < 0.9 * asked).collect();
+    let is_plain = |item: &&AtlasMesh| item.instances.iter().all(|instance| instance.own_density.is_none());
+    let reached = items.iter().filter(is_plain).map(|item| (reached(item), item));
+    let short: Vec<_> = reached.filter(|(density, _)| *density < 0.9 * asked).collect();
     let (least, item) = short.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let mesh = &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let mesh = &scene.meshes[scene.instances[item.instances[0].index].mesh];
     Some(Warning::LessDensity {
         meshes: short.len(),
         page_size_texels: settings.page_size_texels,
@@ -58,8 +81,10 @@ pub(super) fn fit_warning(
 /// Meshes with the file's own layout whose islands are too close together at their final size.
 pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -> Vec<usize> {
     let is_crowded = |item: &AtlasMesh| {
-        let smallest = item.instances.iter().min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some(&(instance, _)) = smallest.filter(|_| matches!(item.form, MeshLayout::FileLayout(_))) else {
+        let scale = |index: usize| atlas.placements[index].scale.x;
+        let instances = item.instances.iter().map(|instance| instance.index);
+        let smallest = instances.min_by(|&a, &b| scale(a).total_cmp(&scale(b)));
+        let Some(instance) = smallest.filter(|_| matches!(item.form, MeshLayout::FileLayout(_))) else {
             return false;
         };
         let size = atlas.pages[atlas.placements[instance].page as usize];
@@ -71,7 +96,7 @@ pub(super) fn crowded_items(scene: &Scene, items: &[AtlasMesh], atlas: &Atlas) -
 
 /// A warning if some meshes have a `TEXCOORD_1` that could not be used.
 pub(super) fn refusal_warning(scene: &Scene, settings: &AtlasSettings, items: &[AtlasMesh]) -> Option<Warning> {
-    let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].0].mesh];
+    let mesh = |item: &AtlasMesh| &scene.meshes[scene.instances[item.instances[0].index].mesh];
     let is_refused =
         |item: &&AtlasMesh| matches!(item.form, MeshLayout::Charts(_)) && mesh(item).texcoord_set(FILE_SET).is_some();
     let meshes = each_once(items.iter().filter(is_refused).map(|item| mesh(item).label()).collect());

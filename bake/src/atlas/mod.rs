@@ -8,6 +8,7 @@ use crate::scene::Mesh;
 use crate::warning::Warning;
 use glam::{DVec2, DVec3, Vec2};
 
+mod around;
 mod arrange;
 mod build;
 mod coverage;
@@ -30,7 +31,9 @@ mod tests;
 mod tile;
 mod unwrap;
 mod walls;
+mod zones;
 
+pub(crate) use around::Around;
 pub use build::build;
 pub use error::AtlasError;
 pub use footprint::{Filtered, Footprint};

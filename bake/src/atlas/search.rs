@@ -35,14 +35,11 @@ fn plan_at_density(
     items: &mut [AtlasMesh],
     meter: &ProgressMeter,
 ) -> Result<AtlasPlan, AtlasError> {
-    let texels = (items.iter().map(AtlasMesh::area_m2).sum::<f64>() * density * density) as u64;
-    if texels > settings.most_texels {
-        return Err(AtlasError::TooDense { density_per_metre: density, texels, most: settings.most_texels });
-    }
+    check_texels(settings, density, items)?;
     let mut shares = vec![1.0; items.len()];
     for (index, share) in shares.iter_mut().enumerate() {
         let arrangement = arrangement(settings, items);
-        while !arrangement.fits_alone(index, density * *share) {
+        while !arrangement.fits_alone(index, density, *share) {
             *share *= 0.94;
             if *share < LEAST_SHARE || !meter.reach(UNWRAP_SHARE) {
                 return Err(cancelled_or_too_small(settings, items, meter));
@@ -54,6 +51,22 @@ fn plan_at_density(
     plan.ok_or_else(|| cancelled_or_too_small(settings, items, meter))
 }
 
+/// Refuses more texels than are allowed, and says which mesh asks for most of them.
+fn check_texels(settings: &AtlasSettings, texels_per_metre: f64, items: &[AtlasMesh]) -> Result<(), AtlasError> {
+    let texels: f64 = items.iter().map(|item| item.texels(texels_per_metre)).sum();
+    if texels as u64 <= settings.most_texels {
+        return Ok(());
+    }
+    let each = items.iter().map(|item| (item.texels(texels_per_metre), item.instances[0].index));
+    let (most_asked, instance) = each.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    Err(AtlasError::TooDense {
+        instance,
+        of_instance: most_asked as u64,
+        texels: texels as u64,
+        most: settings.most_texels,
+    })
+}
+
 fn plan_for_pages(
     settings: &AtlasSettings,
     pages: u32,
@@ -61,6 +74,7 @@ fn plan_for_pages(
     warnings: &mut Vec<Warning>,
     meter: &ProgressMeter,
 ) -> Result<AtlasPlan, AtlasError> {
+    check_texels(settings, 0.0, items)?;
     let mut count = pages;
     loop {
         if let Some((plan, density)) = densest(settings, count, items, meter) {
@@ -90,8 +104,14 @@ fn densest(
 ) -> Option<(AtlasPlan, f64)> {
     let arrangement = arrangement(settings, items);
     let page = f64::from(settings.page_size_texels);
-    let area_m2: f64 = items.iter().map(AtlasMesh::area_m2).sum();
-    let full = if area_m2 > 0.0 { (f64::from(pages) * page * page / area_m2).sqrt() } else { 1.0 };
+    let (area_m2, own_texels) =
+        items.iter().map(AtlasMesh::area_and_own_texels).fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
+    // What the objects leave that have a density of their own.
+    let left_texels = f64::from(pages) * page * page - own_texels;
+    if left_texels <= 0.0 {
+        return None;
+    }
+    let full = if area_m2 > 0.0 { (left_texels / area_m2).sqrt() } else { 1.0 };
     let mut high = full;
     let mut low = full * 0.75;
     let mut best = loop {
@@ -117,7 +137,8 @@ fn densest(
 }
 
 fn arrangement<'a>(settings: &AtlasSettings, items: &'a [AtlasMesh]) -> Arrangement<'a> {
-    Arrangement { items, page_size_texels: settings.page_size_texels, padding_texels: settings.padding_texels }
+    let AtlasSettings { page_size_texels, padding_texels, .. } = *settings;
+    Arrangement { items, page_size_texels, padding_texels, share: 1.0 }
 }
 
 fn cancelled_or_too_small(settings: &AtlasSettings, items: &[AtlasMesh], meter: &ProgressMeter) -> AtlasError {

@@ -1,5 +1,6 @@
 //! A file whose meshes all share one light map: their `TEXCOORD_1` becomes the only page, unchanged.
 
+use super::arrange::AtlasInstance;
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, FILE_SET, Layout, PageSize, Placement};
 use crate::scene::Scene;
@@ -9,9 +10,10 @@ use rayon::prelude::*;
 
 /// The atlas, if the meshes' `TEXCOORD_1` share one [0, 1] without overlap and their islands are far enough apart at
 /// this page size.
-pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Vec<(usize, f64)>]) -> Option<Atlas> {
+pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Vec<AtlasInstance>]) -> Option<Atlas> {
     let meshes: Vec<usize> = (0..drawn.len()).filter(|&m| !drawn[m].is_empty()).collect();
-    if !settings.keeps_existing || meshes.is_empty() || meshes.iter().any(|&m| drawn[m].len() > 1) {
+    let has_own_density = drawn.iter().flatten().any(|instance| instance.own_density.is_some());
+    if !settings.keeps_existing || meshes.is_empty() || has_own_density || meshes.iter().any(|&m| drawn[m].len() > 1) {
         return None;
     }
     let given: Vec<_> =
@@ -20,7 +22,7 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
         return None;
     }
     let (metres2, uv2) = meshes.iter().zip(&given).fold((0.0, 0.0), |(metres2, uv2), (&m, g)| {
-        (metres2 + (g.object_per_uv * drawn[m][0].1).powi(2) * g.uv_area, uv2 + g.uv_area)
+        (metres2 + (g.object_per_uv * drawn[m][0].metres_per_unit).powi(2) * g.uv_area, uv2 + g.uv_area)
     });
     let side = match settings.density {
         Density::Pages(_) => settings.page_size_texels,
@@ -35,7 +37,7 @@ pub(super) fn shared_square(scene: &Scene, settings: &AtlasSettings, drawn: &[Ve
     }
     let whole_page = Placement { page: 0, scale: Vec2::ONE, offset: Vec2::ZERO };
     let mut placements = vec![Placement::EMPTY; scene.instances.len()];
-    drawn.iter().flatten().for_each(|&(instance, _)| placements[instance] = whole_page);
+    drawn.iter().flatten().for_each(|instance| placements[instance.index] = whole_page);
     let layout = |m: usize| {
         if drawn[m].is_empty() {
             Layout::of_mesh(&scene.meshes[m])

@@ -16,6 +16,7 @@
 
 use crate::scene::Mesh;
 use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
 use uvunwrap::{Density, Error, MeshInput, Options, OutputMesh, Packing};
 
 /// Least number of triangles for the height field test.
@@ -43,6 +44,8 @@ pub(super) struct Charts {
     pub chart_of: Vec<u32>,
     /// Size of each chart's bounding box, in units of object space.
     pub sizes: Vec<DVec2>,
+    /// Texels a metre of each chart, if not those of its instance. Empty where no chart has its own.
+    own_densities: Vec<Option<f64>>,
     /// Triangles, sorted by chart.
     by_chart: Vec<u32>,
     /// Where each chart's triangles start in `by_chart`; one more at the end.
@@ -54,6 +57,41 @@ impl Charts {
     pub fn triangles_of(&self, chart: usize) -> impl Iterator<Item = [u32; 3]> {
         let range = self.first_of[chart] as usize..self.first_of[chart + 1] as usize;
         self.by_chart[range].iter().map(|&t| [0, 1, 2].map(|k| self.indices[3 * t as usize + k]))
+    }
+
+    /// Whether some chart has a density of its own.
+    pub fn has_own_densities(&self) -> bool {
+        !self.own_densities.is_empty()
+    }
+
+    /// Texels a metre of a chart, if not those of its instance.
+    pub fn own_density(&self, chart: usize) -> Option<f64> {
+        self.own_densities.get(chart).copied().flatten()
+    }
+
+    /// Area of the flattened triangles of each chart, in square units of object space.
+    pub fn areas(&self) -> impl Iterator<Item = f64> {
+        (0..self.sizes.len()).map(|chart| {
+            let area = |t: [u32; 3]| {
+                let [a, b, c] = t.map(|k| self.points[k as usize]);
+                (b - a).perp_dot(c - a).abs() * 0.5
+            };
+            self.triangles_of(chart).map(area).sum()
+        })
+    }
+
+    /// Adds the charts of some of the mesh's triangles, which were unwrapped apart.
+    fn append(&mut self, part: Self, triangles: &[usize], own_density: Option<f64>) {
+        let (first_vertex, first_chart) = (self.vertices.len() as u32, self.sizes.len() as u32);
+        for (&triangle, corners) in triangles.iter().zip(part.indices.chunks_exact(3)) {
+            let whole = &mut self.indices[3 * triangle..3 * triangle + 3];
+            whole.iter_mut().zip(corners).for_each(|(index, corner)| *index = first_vertex + corner);
+        }
+        self.vertices.extend(part.vertices);
+        self.points.extend(part.points);
+        self.chart_of.extend(part.chart_of.into_iter().map(|chart| first_chart + chart));
+        self.own_densities.extend(part.sizes.iter().map(|_| own_density));
+        self.sizes.extend(part.sizes);
     }
 
     /// Sorts triangles by chart.
@@ -87,6 +125,25 @@ pub(super) fn unwrap(mesh: &Mesh, keep_going: &(dyn Fn() -> bool + Sync)) -> Opt
         Err(Error::Cancelled) => None,
         Err(_) => Some(each_triangle_alone(mesh).sorted()),
     }
+}
+
+/// Unwraps a mesh whose triangles have densities of their own, each density apart.
+pub(super) fn unwrap_apart(
+    mesh: &Mesh,
+    densities: &[Option<f64>],
+    keep_going: &(dyn Fn() -> bool + Sync),
+) -> Option<Charts> {
+    let mut groups: BTreeMap<Option<u64>, Vec<usize>> = BTreeMap::new();
+    for (triangle, density) in densities.iter().enumerate() {
+        groups.entry(density.map(f64::to_bits)).or_default().push(triangle);
+    }
+    let mut charts = Charts { indices: vec![0; mesh.indices.len()], ..Charts::default() };
+    for (density, triangles) in groups {
+        let indices = triangles.iter().flat_map(|&t| mesh.indices[3 * t..3 * t + 3].iter().copied()).collect();
+        let part = unwrap(&Mesh { indices, ..mesh.clone() }, keep_going)?;
+        charts.append(part, &triangles, density.map(f64::from_bits));
+    }
+    Some(charts.sorted())
 }
 
 /// Positions relative to the middle of the mesh, at most 1 along each axis, and the power of two that divided them.

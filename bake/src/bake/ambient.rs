@@ -2,7 +2,7 @@
 
 use super::error::BakeError;
 use super::light::{AmbientAccount, AmbientJob};
-use super::pages::PageBaker;
+use super::pages::{PageBaker, PageTexels};
 use super::timing::{check_cancelled, timed};
 use crate::ambient::{AmbientPage, AmbientPoint, Mismatch, Seams, ambient_visibility_of_vertices, solve_ambient};
 use crate::atlas::{self, PageSamples, PageSize, Sample};
@@ -15,16 +15,11 @@ use crate::warning::Warning;
 
 impl PageBaker<'_> {
     /// Bakes the ambient light of a page, if that is asked for.
-    pub(super) fn bake_ambient(
-        &mut self,
-        page: usize,
-        samples: &PageSamples,
-        order: &[u32],
-    ) -> Result<Option<AmbientPage>, BakeError> {
+    pub(super) fn bake_ambient(&mut self, page: usize, texels: PageTexels) -> Result<Option<AmbientPage>, BakeError> {
         let Some(job) = self.lights.ambient else { return Ok(None) };
-        self.progress.start(BakeStep::Ambient, samples.samples.len() as u64);
+        self.progress.start(BakeStep::Ambient, texels.samples.samples.len() as u64);
         let mut seconds = 0.0;
-        let baked = timed(&mut seconds, || self.bake_page_ambient(&job, page, samples, order));
+        let baked = timed(&mut seconds, || self.bake_page_ambient(&job, page, texels));
         self.stats.seconds.ambient += seconds;
         baked.map(Some)
     }
@@ -48,8 +43,7 @@ impl PageBaker<'_> {
         &mut self,
         job: &AmbientJob,
         page: usize,
-        samples: &PageSamples,
-        order: &[u32],
+        PageTexels { samples, order, gutter, walls }: PageTexels,
     ) -> Result<AmbientPage, BakeError> {
         let (scene, geometry, atlas, progress) = (self.scene, self.geometry, self.atlas, self.progress);
         let size = atlas.pages[page];
@@ -76,9 +70,9 @@ impl PageBaker<'_> {
         account.unconverged_texels += runs.iter().map(|run| run.unconverged).sum::<u64>();
         account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
         account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
-        let mut baked = AmbientPage::new(size, samples, order, &runs, job.engine.settings());
+        let mut baked = AmbientPage::new(size, samples, order, walls, &runs, job.engine.settings());
         drop(runs);
-        baked.fill(&atlas::gutter(size, samples, self.settings.padding_texels), samples);
+        baked.fill(gutter, samples);
         let seams = Seams::find(scene, geometry, job.normals, atlas, page as u32, samples);
         check_cancelled(progress)?;
         for side in baked.sides_mut() {

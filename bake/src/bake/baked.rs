@@ -42,7 +42,7 @@ impl Bake {
     /// Where the scene needs more memory than `limits` allow.
     pub fn scene(&self, limits: &LoadLimits) -> Result<Scene, LoadError> {
         let mut scene = scene::parse(Path::new(&self.manifest.scene.file), &self.scene_glb, limits)?;
-        self.manifest.leave_out(&mut scene);
+        self.manifest.apply_roles(&mut scene);
         Ok(scene)
     }
 

@@ -6,7 +6,7 @@ use crate::disk::manifest::{self, ArcEntry, ErrorEntry, InstanceEntry, LampEntry
 use crate::disk::write::SCENE_FILE;
 use crate::glb::{WrittenPlace, WrittenScene};
 use crate::lamp::{LampKey, LampPath};
-use crate::scene::{Alpha, Scene};
+use crate::scene::Scene;
 use crate::settings::BakeSettings;
 use crate::sun::{self, SunPath};
 use crate::warning::{Light, Warning};
@@ -80,16 +80,19 @@ fn arc_entry(arc: &sun::SunArc) -> ArcEntry {
 pub(super) fn instance_entries(scene: &Scene, atlas: &Atlas, written: &WrittenScene) -> Vec<InstanceEntry> {
     let entry = |(index, &WrittenPlace { node, primitive, uv_set }): (usize, &WrittenPlace)| {
         let placement = &atlas.placements[index];
-        let material = scene.material(index);
+        let role = scene.instances[index].role;
         InstanceEntry {
             node,
             primitive,
-            atlas: (material.alpha != Alpha::Invisible).then_some(placement.page),
+            atlas: scene.receives(index).then_some(placement.page),
+            casts: role.casts,
+            // What is left out is not there, whatever else was asked for it.
+            receives: role.receives || !scene.is_there(index),
             uv_set,
             // Coordinates that are the page's own already are not moved again.
             uv_scale: if written.has_page_uvs { [1.0; 2] } else { placement.scale.to_array() },
             uv_offset: if written.has_page_uvs { [0.0; 2] } else { placement.offset.to_array() },
-            double_sided: material.is_double_sided,
+            double_sided: scene.material(index).is_double_sided,
         }
     };
     written.places.iter().enumerate().map(entry).collect()

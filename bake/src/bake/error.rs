@@ -6,7 +6,7 @@ use crate::disk::write::WriteError;
 use crate::glb::GlbTooLarge;
 use crate::lamp::{LampError, LampFileError};
 use crate::remedy::Setting;
-use crate::scene::LoadError;
+use crate::scene::{LoadError, ObjectError, Scene};
 use crate::settings::EngineChoice;
 use crate::sun::{DayError, KeyedError, LightError};
 
@@ -37,14 +37,9 @@ pub enum BakeError {
     /// The scene's light makes no path.
     #[error(transparent)]
     Light(#[from] LightError),
-    /// What is to be left out is not there.
-    #[error("the scene has no material, node or mesh named {name:?} to leave out; it has {known}")]
-    NothingNamed {
-        /// The name that was given.
-        name: String,
-        /// What there is, as far as fits.
-        known: String,
-    },
+    /// What is asked for objects cannot be granted.
+    #[error(transparent)]
+    Objects(#[from] ObjectError),
     /// The scene cannot be laid out.
     #[error(transparent)]
     Atlas(AtlasError),
@@ -82,13 +77,20 @@ pub enum BakeError {
     NoExr,
 }
 
-impl From<AtlasError> for BakeError {
-    fn from(error: AtlasError) -> Self {
+impl BakeError {
+    /// Why a scene cannot be laid out, with the names of its objects.
+    pub(super) fn of_atlas(error: AtlasError, scene: &Scene) -> Self {
         match error {
             AtlasError::Cancelled => Self::Cancelled,
-            AtlasError::TooDense { density_per_metre, texels, most } => Self::Memory {
-                what: format!("a density of {density_per_metre} texels a metre (about {texels} texels)"),
-                smaller: vec![Setting::TexelsPerMetre],
+            AtlasError::TooDense { instance, of_instance, texels, most } => Self::Memory {
+                what: format!(
+                    "the density asked for (about {texels} texels, {of_instance} of them for {})",
+                    scene.meshes[scene.instances[instance].mesh].label()
+                ),
+                smaller: match scene.instances[instance].role.texels_per_metre {
+                    Some(_) => vec![Setting::ObjectDensity],
+                    None => vec![Setting::TexelsPerMetre],
+                },
                 needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
                 allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,
             },

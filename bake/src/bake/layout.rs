@@ -27,7 +27,7 @@ pub(crate) fn fitting_atlas(
                 return Ok((atlas, settings));
             }
             Err(error @ AtlasError::PageTooSmall { .. }) => error,
-            Err(error) => return Err(error.into()),
+            Err(error) => return Err(BakeError::of_atlas(error, scene)),
         };
         if settings.padding_texels > 1 {
             settings.padding_texels = 1;
@@ -37,7 +37,7 @@ pub(crate) fn fitting_atlas(
         }
         let is_possible = settings.page_size_texels <= LARGEST_PAGE_TEXELS;
         if !is_possible || check_memory(scene, &settings, settings.page_size_texels).is_err() {
-            return Err(error.into());
+            return Err(BakeError::of_atlas(error, scene));
         }
     }
 }

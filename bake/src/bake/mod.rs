@@ -5,9 +5,10 @@ mod baked;
 mod entries;
 mod error;
 mod layout;
-mod leave_out;
 mod light;
 mod memory;
+mod narrow;
+mod occluders;
 mod pages;
 mod prepare;
 mod timing;
@@ -34,8 +35,9 @@ use crate::warning::Warning;
 use baked::{PageFiles, PageSink, UnpagedBake, stored_bits, write_unpaged};
 use entries::{instance_entries, loss_warnings, manifest_of};
 use layout::check_memory;
-use leave_out::darkness_warning;
 use light::{AmbientJob, LightAccount, LightJob, Lights};
+use narrow::narrow_warning;
+use occluders::{darkness_warning, occluder_warnings};
 use pages::PageBaker;
 use prepare::prepare_scene;
 use std::path::Path;
@@ -71,7 +73,7 @@ pub fn bake(
 }
 
 /// Bakes a scene in memory: the result of [`bake`], kept instead of written. All pages are held at once, where [`bake`]
-/// holds one. The scene is copied, because [`BakeSettings::leave_out`] changes its materials.
+/// holds one. The scene is copied, because [`BakeSettings::objects`] changes it.
 ///
 /// # Errors
 ///
@@ -109,11 +111,18 @@ fn bake_prepared(
     let mut seconds = StepSeconds { load: prepared.load_seconds, ..StepSeconds::default() };
     let mut warnings = prepared.warnings.clone();
     let (atlas, settings) = &timed(&mut seconds.unwrap, || fitting_atlas(scene, settings, &mut warnings, progress))?;
+    warnings.extend(atlas.warnings.iter().cloned());
+    warnings.extend(narrow_warning(scene, atlas));
 
     progress.start(BakeStep::Bvh, 0);
     let geometry = Geometry::new(scene);
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
+    let occluders = path.map(|path| occluder_warnings(scene, &geometry, &tracer, path)).unwrap_or_default();
+    let has_occluders = !occluders.is_empty();
+    warnings.extend(occluders);
+    // Before the long part: who sees that something is wrong can stop here.
+    warnings.iter().for_each(|warning| progress.warn(warning));
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
@@ -152,8 +161,8 @@ fn bake_prepared(
     };
     check_cancelled(progress)?;
     warnings.extend(written.not_kept.iter().cloned().map(Warning::NotKept));
-    warnings.extend(atlas.warnings.iter().cloned());
-    warnings.extend(path.and_then(|_| darkness_warning(manifest.stats.dark_texels, manifest.stats.texels)));
+    let darkness = || darkness_warning(manifest.stats.dark_texels, manifest.stats.texels);
+    warnings.extend(path.filter(|_| !has_occluders).and_then(|_| darkness()));
     warnings.extend(loss_warnings(&manifest, settings));
     let of_ambient = manifest.ambient.as_ref().zip(settings.ambient.as_ref());
     warnings.extend(of_ambient.into_iter().flat_map(|(entry, request)| ambient::warnings(entry, request)));

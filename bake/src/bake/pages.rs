@@ -19,15 +19,15 @@ use std::time::Instant;
 
 /// The texels of a page.
 #[derive(Clone, Copy)]
-struct PageTexels<'a> {
+pub(super) struct PageTexels<'a> {
     /// Those that surfaces cover.
-    samples: &'a PageSamples,
+    pub samples: &'a PageSamples,
     /// Their order, tile by tile.
-    order: &'a [u32],
+    pub order: &'a [u32],
     /// Those that copy them.
-    gutter: &'a [GutterTexel],
+    pub gutter: &'a [GutterTexel],
     /// What stands between them.
-    walls: Option<&'a [[u8; 2]]>,
+    pub walls: Option<&'a [[u8; 2]]>,
 }
 
 /// Bakes pages, and keeps the statistics.
@@ -75,7 +75,7 @@ impl<'a> PageBaker<'a> {
             scene,
             geometry,
             walls: WallFinder::new(scene, geometry, atlas, tracer),
-            buried: BuriedPoints { scene, geometry, tracer, texel_m: 1.0 / atlas.texels_per_metre },
+            buried: BuriedPoints { scene, geometry, tracer, texel_m: atlas.texel_widths_m(scene) },
             atlas,
             settings,
             lights,
@@ -92,10 +92,9 @@ impl<'a> PageBaker<'a> {
     /// Bakes every page into `sink`, and says what the manifest should say of each.
     pub fn bake_all(&mut self, sink: &mut dyn PageSink) -> Result<Vec<AtlasEntry>, BakeError> {
         let mut entries = Vec::with_capacity(self.atlas.pages.len());
-        for (index, &size) in self.atlas.pages.iter().enumerate() {
+        for index in 0..self.atlas.pages.len() {
             let page = self.bake(index)?;
             self.progress.start(BakeStep::Write, 0);
-            self.occlusion.extend(page.maps.ambient.as_ref().map(|ambient| OcclusionPage::new(size, ambient)));
             let entry = page.entry(index);
             timed(&mut self.stats.seconds.write, || sink.take(page, &entry))?;
             entries.push(entry);
@@ -125,10 +124,12 @@ impl<'a> PageBaker<'a> {
         self.lamp = account;
         check_cancelled(self.progress)?;
         let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
-        let numbers = self.bake_ambient(index, &samples, &order)?;
+        let numbers = self.bake_ambient(index, texels)?;
         let request = self.settings.ambient.as_ref();
         let ambient =
             numbers.as_ref().zip(request).map(|(page, request)| AmbientMaps::of(page).rounded_to(request.bits));
+        let both = numbers.as_ref().zip(ambient.as_ref());
+        self.occlusion.extend(both.map(|(page, maps)| OcclusionPage::new(size, maps, &page.behind_walls)));
         let maps =
             PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient, walls };
         let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));

@@ -1,11 +1,10 @@
 //! What is decided before a bake: the scene, its lights, the effect plan.
 
 use super::error::BakeError;
-use super::leave_out::leave_out;
 use crate::lamp::{self, LampPath};
 use crate::plan::{EffectPlan, NoSun};
 use crate::progress::{BakeStep, Progress};
-use crate::scene::{self, LoadLimits, Scene};
+use crate::scene::{self, LoadLimits, Scene, each_once};
 use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{self, DayOutcome, SunPath};
 use crate::warning::Warning;
@@ -43,14 +42,27 @@ pub fn prepare(scene_file: &Path, settings: &BakeSettings, progress: &dyn Progre
 
 /// Decides what to bake of a scene.
 pub(super) fn prepare_scene(mut scene: Scene, settings: &BakeSettings) -> Result<Prepared, BakeError> {
-    leave_out(&mut scene, &settings.leave_out)?;
+    settings.objects.apply_to(&mut scene)?;
     let mut warnings: Vec<Warning> = scene.warnings.iter().cloned().map(Warning::Scene).collect();
+    warnings.extend(clear_warning(&scene));
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
     let path = if is_lamp_alone { None } else { sun_path(&settings.sun, &scene, &mut warnings)? };
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
     let no_sun = if is_lamp_alone { NoSun::LampInstead } else { NoSun::DoesNotRise };
     let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
     Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: 0.0 })
+}
+
+/// A word about panes that let the light through.
+fn clear_warning(scene: &Scene) -> Option<Warning> {
+    let is_clear = |index: &usize| scene.is_there(*index) && scene.material(*index).is_clear && !scene.casts(*index);
+    let label = |index: usize| {
+        let material = scene.material(index);
+        let index = material.gltf.map_or_else(|| "a material".to_owned(), |gltf| format!("materials[{gltf}]"));
+        material.name.as_ref().map_or(index, |name| format!("\"{name}\""))
+    };
+    let materials = each_once((0..scene.instances.len()).filter(is_clear).map(label).collect());
+    (!materials.is_empty()).then_some(Warning::Clear { materials })
 }
 
 /// The lamp that is asked for, beside the sun or instead of it. Beside a sun its path lasts as long as the sun's.

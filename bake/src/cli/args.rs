@@ -6,7 +6,7 @@ use super::values::{
 };
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use sunbake::console::SunArgs;
+use sunbake::console::{DensityArgs, ObjectArgs, SunArgs};
 use sunbake::maps::Bits;
 use sunbake::settings::{EngineChoice, VertexAttribute};
 
@@ -30,7 +30,7 @@ pub enum Command {
     /// Exit codes: 0 done, 1 usage, 2 reading or writing failed, 3 the input is bad, 4 a defect of sunbake, 5 not
     /// supported by this machine, 130 or 143 stopped by a signal.
     Bake(Box<BakeArgs>),
-    /// Print what a set holds, what it cost and what it lost.
+    /// Print what a set holds, what it cost and what it lost; or the names in a scene, for options that take them.
     Inspect(InspectArgs),
     /// Print some covered texels of a set as JSON lines.
     ///
@@ -83,12 +83,10 @@ pub struct BakeArgs {
     /// Defaults of the options below.
     #[arg(long, value_enum, default_value_t = Preset::Standard)]
     pub preset: Preset,
-    /// Leave a material, node or mesh out: it is not drawn, not baked and casts nothing. May be given several times.
-    ///
-    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells. NAME may hold `*` for any
-    /// text; what has no name is material:3, node:12 or mesh:0, by its index in the file. A node takes all below it.
-    #[arg(long, value_name = "NAME")]
-    pub leave_out: Vec<String>,
+    #[command(flatten)]
+    pub objects: ObjectArgs,
+    #[command(flatten)]
+    pub densities: DensityArgs,
     #[command(flatten)]
     pub sun: PathArgs,
     #[command(flatten)]
@@ -282,9 +280,10 @@ pub struct CostCommandArgs {
     /// listed with its prediction. Reading the scene and unwrapping it are not limited.
     #[arg(long, value_name = "S", default_value = "600", value_parser = parse_budget)]
     pub budget: f64,
-    /// Leave a material, node or mesh out, as in `bake`. May be given several times.
-    #[arg(long, value_name = "NAME")]
-    pub leave_out: Vec<String>,
+    #[command(flatten)]
+    pub objects: ObjectArgs,
+    #[command(flatten)]
+    pub densities: DensityArgs,
     #[command(flatten)]
     pub sun: PathArgs,
     /// Edge of the page whose texels are sampled, 64 to 16384. Whole bakes have sizes of their own.
@@ -302,9 +301,10 @@ pub struct CostCommandArgs {
 
 #[derive(Debug, ClapArgs)]
 pub struct InspectArgs {
-    /// The set's folder.
+    /// The set's folder, or a scene: .gltf or .glb.
+    #[arg(value_name = "SET|SCENE")]
     pub set: PathBuf,
-    /// Print the manifest as JSON.
+    /// Print the manifest, or the names, as JSON.
     #[arg(long)]
     pub json: bool,
 }

@@ -11,7 +11,7 @@ use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let settings = settings(args)?;
-    let progress = ProgressLine::new(args.printing.quiet).listening();
+    let progress = ProgressLine::new(args.printing.quiet).listening().telling(Command::Sunbake);
     let target = match &args.output {
         Some(target) if !args.explain => target,
         _ => return explain(args, &settings, &progress),
@@ -19,14 +19,14 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     let baked = sunbake::bake(&args.scene, target, args.force, &settings, &progress);
     progress.clear();
     let report = baked.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
-    tell(args, target, &report)
+    tell(args, target, &report, &progress)
 }
 
-fn tell(args: &BakeArgs, target: &Path, report: &BakeReport) -> Result<(), Failure> {
+fn tell(args: &BakeArgs, target: &Path, report: &BakeReport, progress: &ProgressLine) -> Result<(), Failure> {
     let OutputArgs { json, quiet, verbose } = args.printing;
     let manifest = &report.manifest;
     if !quiet {
-        warn_all(&report.warnings, Command::Sunbake);
+        warn_all(&progress.not_told(&report.warnings), Command::Sunbake);
     }
     if json {
         return print_json(manifest);
@@ -85,7 +85,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     let lamp = args.lamp.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
     Ok(BakeSettings {
         lamp,
-        leave_out: args.leave_out.clone(),
+        objects: args.objects.wishes_with(&args.densities),
         density: cost.texels_per_metre.map_or(preset.density, Density::TexelsPerMetre),
         page_size_texels: cost.size.unwrap_or(preset.page_size_texels),
         padding_texels: cost.padding.unwrap_or(preset.padding_texels),

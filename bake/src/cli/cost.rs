@@ -13,7 +13,7 @@ use sunbake::report::{plain, with_unit};
 pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
     let settings = CostSettings {
         sun: sun(&args.sun)?,
-        leave_out: args.leave_out.clone(),
+        objects: args.objects.wishes_with(&args.densities),
         page_size_texels: args.size,
         budget_s: args.budget,
         threads: args.threads,

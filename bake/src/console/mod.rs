@@ -19,7 +19,9 @@
 //! `failure.rs`, and the words of its [`Remedy`](crate::Remedy) in `remedies.rs`. Results go to stdout; warnings,
 //! progress and failures to stderr.
 
+mod clock_offset;
 mod failure;
+mod object_args;
 mod print;
 mod progress;
 mod remedies;
@@ -28,6 +30,7 @@ mod signals;
 mod sun_args;
 
 pub use failure::Failure;
+pub use object_args::{DensityArgs, ObjectArgs};
 pub use print::{print, print_json, sentence, tell, warn, warn_all};
 pub use progress::ProgressLine;
 pub use run::{Command, set_threads};

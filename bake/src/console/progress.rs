@@ -1,7 +1,10 @@
 //! Progress: one line on stderr, if stderr is a terminal.
 
+use super::Command;
+use super::print::{sentence, warn};
 use super::signals::Signals;
 use crate::progress::{BakeStep, Progress};
+use crate::warning::Warning;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Mutex;
@@ -11,17 +14,42 @@ use std::time::Duration;
 #[derive(Debug)]
 pub struct ProgressLine {
     is_drawn: bool,
+    is_quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
     /// What steps are part of; empty if they are part of nothing.
     task: Mutex<String>,
     signals: Option<Signals>,
+    /// Who tells warnings as they come; none: nobody.
+    teller: Option<Command>,
+    told: Mutex<Vec<Warning>>,
 }
 
 impl ProgressLine {
     /// Draws if stderr is a terminal and `quiet` is not asked for.
     pub fn new(quiet: bool) -> Self {
         let is_drawn = !quiet && std::io::stderr().is_terminal();
-        Self { is_drawn, bar: Mutex::default(), task: Mutex::default(), signals: None }
+        let told = Mutex::default();
+        Self {
+            is_drawn,
+            is_quiet: quiet,
+            bar: Mutex::default(),
+            task: Mutex::default(),
+            signals: None,
+            teller: None,
+            told,
+        }
+    }
+
+    /// The same, and prints warnings as they come, with what to do in the options of `command`.
+    pub fn telling(mut self, command: Command) -> Self {
+        self.teller = (!self.is_quiet).then_some(command);
+        self
+    }
+
+    /// Those warnings that were not printed as they came.
+    pub fn not_told(&self, warnings: &[Warning]) -> Vec<Warning> {
+        let told = self.told.lock().map(|told| told.clone()).unwrap_or_default();
+        warnings.iter().filter(|warning| !told.contains(warning)).cloned().collect()
     }
 
     /// The same, and hears Ctrl-C: whatever reports to it is then asked to stop.
@@ -94,6 +122,18 @@ impl Progress for ProgressLine {
 
     fn advance(&self, by: u64) {
         self.step(by);
+    }
+
+    fn warn(&self, warning: &Warning) {
+        let Some(command) = self.teller else { return };
+        let print = || warn(&sentence(warning, command));
+        match self.bar.lock().as_deref() {
+            Ok(Some(bar)) => bar.suspend(print),
+            _ => print(),
+        }
+        if let Ok(mut told) = self.told.lock() {
+            told.push(warning.clone());
+        }
     }
 
     fn is_cancelled(&self) -> bool {

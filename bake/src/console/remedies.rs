@@ -17,6 +17,7 @@ fn option(setting: Setting, command: Command) -> Option<&'static str> {
 fn option_of_sunbake(setting: Setting) -> Option<&'static str> {
     Some(match setting {
         Setting::TexelsPerMetre => "--texels-per-metre",
+        Setting::ObjectDensity => "--density",
         Setting::Padding => "--padding",
         Setting::Bits => "--bits",
         Setting::Layers => "--layers",
@@ -52,6 +53,8 @@ fn option_of_both(setting: Setting) -> Option<&'static str> {
     Some(match setting {
         Setting::Threads => "--threads",
         Setting::LeaveOut => "--leave-out",
+        Setting::NoCast => "--no-cast",
+        Setting::NoReceive => "--no-receive",
         Setting::Place => "--place",
         Setting::Date => "--date",
         Setting::Output => "-o",

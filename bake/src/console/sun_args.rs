@@ -1,8 +1,9 @@
 //! The options that choose a sun by place and day.
 
 use super::Failure;
+use super::clock_offset::{ClockOffset, parse_clock_offset};
 use crate::settings::SunRequest;
-use crate::sun::{Date, DayRequest, parse_place, parse_utc_offset};
+use crate::sun::{Date, DayRequest, parse_place};
 use clap::Args;
 
 /// The sun over a scene.
@@ -17,10 +18,10 @@ pub struct SunArgs {
     /// centre of the sun's disc on a level horizon, without refraction.
     #[arg(long, value_name = "YYYY-MM-DD")]
     pub date: Option<Date>,
-    /// Hours that local clocks are ahead of UTC, -12 to 14, as -8, 5.75 or 5:45. [default: the whole hour nearest to
-    /// the place]
-    #[arg(long, value_name = "H", value_parser = parse_utc_offset, allow_hyphen_values = true)]
-    pub utc_offset: Option<f64>,
+    /// Hours that local clocks are ahead of UTC, -12 to 14, as -8, 5.75 or 5:45; or a time zone by name, as
+    /// Europe/Vienna, with its summer time. [default: the whole hour nearest to the place]
+    #[arg(long, value_name = "H|ZONE", value_parser = parse_clock_offset, allow_hyphen_values = true)]
+    pub utc_offset: Option<ClockOffset>,
     /// Degrees that north is turned from -Z towards +X. [default: 0]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub north: Option<f64>,
@@ -45,7 +46,8 @@ impl SunArgs {
     /// after local midnight.
     pub fn request(&self, window: Option<[f64; 2]>) -> Result<SunRequest, Failure> {
         let day = DayRequest::new(self.place, self.date)?;
-        let day = DayRequest { utc_offset_h: self.utc_offset, north_deg: self.north_deg(), window, ..day };
+        let utc_offset_h = self.utc_offset.as_ref().map(|offset| offset.hours_on(day.date)).transpose()?;
+        let day = DayRequest { utc_offset_h, north_deg: self.north_deg(), window, ..day };
         let is_day = self.names_a_day() || window.is_some();
         Ok(if is_day { SunRequest::Day(day) } else { SunRequest::SceneOr(day) })
     }

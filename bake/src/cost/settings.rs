@@ -1,5 +1,6 @@
 //! What to measure, and within which limits.
 
+use crate::scene::ObjectWishes;
 use crate::settings::{BakeSettings, SunRequest};
 
 /// What to measure, and how long that may take.
@@ -7,8 +8,8 @@ use crate::settings::{BakeSettings, SunRequest};
 pub struct CostSettings {
     /// Which sun.
     pub sun: SunRequest,
-    /// What is left out, see [`BakeSettings::leave_out`].
-    pub leave_out: Vec<String>,
+    /// What is asked for objects by name.
+    pub objects: ObjectWishes,
     /// Edge of the page whose texels the sweeps sample, 64 to 16384, usually that of the standard preset.
     pub page_size_texels: u32,
     /// Seconds that all measurements may take, 10 to 86400, usually 600. With more seconds, more is run.
@@ -24,7 +25,7 @@ impl CostSettings {
     pub(super) fn preset(&self, of: fn(SunRequest) -> BakeSettings) -> BakeSettings {
         let preset = of(self.sun.clone());
         BakeSettings {
-            leave_out: self.leave_out.clone(),
+            objects: self.objects.clone(),
             threads: self.threads,
             max_memory_bytes: self.max_memory_bytes.unwrap_or(preset.max_memory_bytes),
             ..preset

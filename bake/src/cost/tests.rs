@@ -96,7 +96,7 @@ fn file(scene: &Scene, folder: &Path) -> PathBuf {
 fn settings() -> CostSettings {
     CostSettings {
         sun: SunRequest::Day(summer()),
-        leave_out: Vec::new(),
+        objects: Default::default(),
         page_size_texels: 64,
         budget_s: 1000.0,
         threads: 1,

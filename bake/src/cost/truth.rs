@@ -76,7 +76,7 @@ fn draw(workload: &Workload, count: usize) -> Vec<SurfaceSample> {
     let (scene, geometry) = (workload.scene(), &workload.geometry);
     let area = |index: usize| {
         let [a, b, c] = geometry.triangles[index].map(|v| v.as_dvec3());
-        if geometry.is_solid(scene, index) { (b - a).cross(c - a).length() } else { 0.0 }
+        if geometry.receives(scene, index) { (b - a).cross(c - a).length() } else { 0.0 }
     };
     let mut sum = 0.0;
     let below: Vec<f64> = (0..geometry.triangles.len())

@@ -2,7 +2,7 @@
 
 use super::manifest::{InstanceEntry, Manifest};
 use crate::atlas::{Atlas, Layout, PageSize, Placement};
-use crate::scene::{Instance, Scene};
+use crate::scene::{Instance, Role, Scene};
 use glam::Vec2;
 use std::collections::HashMap;
 
@@ -17,11 +17,18 @@ impl Manifest {
         scene.instances.iter().map(find).collect()
     }
 
-    /// Takes away from the set's scene what the bake left out: what has an entry and no atlas page.
-    pub fn leave_out(&self, scene: &mut Scene) {
-        let is_left_out = |(index, entry): (usize, &Option<&InstanceEntry>)| (*entry)?.atlas.is_none().then_some(index);
-        let instances: Vec<usize> = self.entries(scene).iter().enumerate().filter_map(is_left_out).collect();
-        scene.turn_into_air(&instances);
+    /// Gives the instances of the set's scene the roles that they were baked in, and takes away what the bake left
+    /// out: what could be shaded and has no page.
+    pub fn apply_roles(&self, scene: &mut Scene) {
+        let entries: Vec<Option<[bool; 3]>> = self.entries(scene).iter().map(|entry| entry.map(roles)).collect();
+        let mut left_out = Vec::new();
+        for (index, entry) in entries.into_iter().enumerate() {
+            let Some([casts, receives, is_there]) = entry else { continue };
+            let role = &mut scene.instances[index].role;
+            *role = Role { casts, receives, ..*role };
+            left_out.extend((!is_there).then_some(index));
+        }
+        scene.turn_into_air(&left_out);
     }
 
     /// The atlas for the set's scene.
@@ -40,6 +47,11 @@ impl Manifest {
             warnings: Vec::new(),
         }
     }
+}
+
+/// Whether an instance casts, receives, and is there at all.
+fn roles(entry: &InstanceEntry) -> [bool; 3] {
+    [entry.casts, entry.receives, entry.atlas.is_some() || !entry.receives]
 }
 
 fn placement(entry: &InstanceEntry) -> Placement {

@@ -312,8 +312,15 @@ pub struct InstanceEntry {
     pub node: usize,
     /// Index of the primitive within the node's mesh.
     pub primitive: usize,
-    /// Index in `atlases`; null for surfaces that are not baked (invisible ones).
+    /// Index in `atlases`; null for what is not baked: what takes no shadows (`receives` is false then) is drawn in
+    /// full light, everything else was left out.
     pub atlas: Option<u32>,
+    /// Whether it hides light. Absent where it does.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub casts: bool,
+    /// Whether others shade it. Absent where they do.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub receives: bool,
     /// Which `TEXCOORD_n` of `scene.glb` holds `uv`. In a set with ambient occlusion these are page coordinates
     /// already, for viewers: the scale is 1 and the offset 0.
     pub uv_set: u32,
@@ -323,6 +330,14 @@ pub struct InstanceEntry {
     pub uv_offset: [f32; 2],
     /// Whether the times are for both sides. If so, a face is lit only while the sun is in front of it.
     pub double_sided: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_true(value: &bool) -> bool {
+    *value
 }
 
 /// One effect: on or off, and why. Cost and toggle are text for people; older sets lack them.

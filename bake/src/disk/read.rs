@@ -46,7 +46,7 @@ impl BakedSet {
     /// Where the file cannot be loaded within `limits`.
     pub fn scene(&self, limits: &LoadLimits) -> Result<Scene, LoadError> {
         let mut scene = scene::load(&self.scene_file(), limits)?;
-        self.manifest.leave_out(&mut scene);
+        self.manifest.apply_roles(&mut scene);
         Ok(scene)
     }
 }

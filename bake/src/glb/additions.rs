@@ -2,7 +2,7 @@
 
 use super::Occlusion;
 use crate::atlas::Layout;
-use crate::scene::{Alpha, Scene};
+use crate::scene::Scene;
 use crate::settings::VertexAttribute;
 use glam::Vec2;
 use std::borrow::Cow;
@@ -29,7 +29,7 @@ impl Additions<'_> {
         match self {
             Self::Nothing => false,
             Self::Coordinates { occlusion: Some(occlusion), .. } => occlusion.page(instance).is_some(),
-            Self::Coordinates { .. } => scene.material(instance).alpha != Alpha::Invisible,
+            Self::Coordinates { .. } => scene.receives(instance),
             Self::VertexVisibility { .. } => true,
         }
     }

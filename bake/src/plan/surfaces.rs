@@ -1,22 +1,24 @@
 //! What is decided about surfaces.
 
 use super::{Decision, Effect, Facts};
-use crate::scene::{Alpha, Material, Scene};
+use crate::scene::{Alpha, Scene};
 
 /// What the scene's materials call for.
 pub(super) fn decisions(scene: &Scene) -> [Decision; 3] {
     [
-        of_surfaces(scene, Effect::AlphaMask, |material| matches!(material.alpha, Alpha::Mask { .. })),
-        of_surfaces(scene, Effect::DoubleSided, |material| {
-            material.is_double_sided && material.alpha != Alpha::Invisible
+        of_surfaces(scene, Effect::AlphaMask, |instance| {
+            scene.casts(instance) && matches!(scene.material(instance).alpha, Alpha::Mask { .. })
+        }),
+        of_surfaces(scene, Effect::DoubleSided, |instance| {
+            scene.receives(instance) && scene.material(instance).is_double_sided
         }),
         Decision { effect: Effect::Walls, is_on: !scene.instances.is_empty(), facts: Facts::Walls { pages: None } },
     ]
 }
 
-/// An effect that is on where some drawn surface has such a material.
-fn of_surfaces(scene: &Scene, effect: Effect, has_effect: impl Fn(&Material) -> bool) -> Decision {
-    let instances = scene.instances.iter().enumerate().filter(|(index, _)| has_effect(scene.material(*index)));
+/// An effect that is on where some instance calls for it.
+fn of_surfaces(scene: &Scene, effect: Effect, has_effect: impl Fn(usize) -> bool) -> Decision {
+    let instances = scene.instances.iter().enumerate().filter(|(index, _)| has_effect(*index));
     let [surfaces, triangles] = instances.fold([0, 0], |[surfaces, triangles], (_, instance)| {
         [surfaces + 1, triangles + scene.meshes[instance.mesh].triangle_count()]
     });

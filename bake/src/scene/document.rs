@@ -42,6 +42,11 @@ impl Document {
         self.list(T::LIST).len()
     }
 
+    /// The `extras` of item `index` of its list, if they are an object.
+    pub fn extras<T: ListItem>(&self, index: usize) -> Option<&serde_json::Map<String, Value>> {
+        self.list(T::LIST).get(index)?.get("extras")?.as_object()
+    }
+
     fn list(&self, name: &str) -> &[Value] {
         self.root.get(name).and_then(Value::as_array).map_or(&[], Vec::as_slice)
     }
@@ -206,6 +211,8 @@ pub(super) struct MaterialExtensions {
     pub unlit: Option<Value>,
     #[serde(rename = "KHR_materials_emissive_strength")]
     pub emissive_strength: Option<EmissiveStrength>,
+    #[serde(rename = "KHR_materials_transmission")]
+    pub transmission: Option<Transmission>,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub specular_glossiness: Option<SpecularGlossiness>,
 }
@@ -214,6 +221,12 @@ pub(super) struct MaterialExtensions {
 #[serde(rename_all = "camelCase")]
 pub(super) struct EmissiveStrength {
     pub emissive_strength: Option<f32>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Transmission {
+    pub transmission_factor: Option<f32>,
 }
 
 #[derive(Deserialize, Default)]

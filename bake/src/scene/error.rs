@@ -121,6 +121,16 @@ pub enum LoadError {
         /// Why the image cannot be used.
         cause: String,
     },
+    /// What the file's extras ask of sunbake makes no sense.
+    #[error("the extras of {place}: {key}: {problem}; correct it, or take it away")]
+    Extras {
+        /// Where in the file.
+        place: String,
+        /// The key.
+        key: String,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// Nodes form a cycle.
     #[error("nodes[{node}] is its own ancestor; remove it from the children of nodes[{parent}]")]
     NodeCycle {

@@ -4,7 +4,7 @@
 //! once, in `f64`, and rounded once to `f32`, so a point computed on a triangle lies on that same triangle for the
 //! tracer. The doc of [`crate::scene`] explains the spaces.
 
-use super::{Alpha, Scene};
+use super::Scene;
 use glam::{DVec3, Vec3};
 
 /// Flattened triangles of a scene, in the order of its instances.
@@ -30,8 +30,8 @@ pub struct SurfaceTriangle {
 }
 
 impl Geometry {
-    /// Transforms every instance. Triangles of [`Alpha::Invisible`] surfaces are kept, so that indices stay aligned
-    /// with the scene; [`Geometry::is_solid`] tells them apart.
+    /// Transforms every instance. Triangles of [`Alpha::Invisible`](super::Alpha::Invisible) surfaces are kept, so that indices stay aligned
+    /// with the scene; [`Geometry::is_there`] tells them apart.
     pub fn new(scene: &Scene) -> Self {
         let count = scene.triangle_count();
         let mut geometry = Self {
@@ -77,14 +77,18 @@ impl Geometry {
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// Whether an instance is visible to rays at all: its material is not [`Alpha::Invisible`].
-    pub fn is_solid_instance(&self, scene: &Scene, instance: usize) -> bool {
-        scene.material(instance).alpha != Alpha::Invisible
+    /// Whether the triangle can be seen: its instance is there, and its corners do not coincide.
+    pub fn is_there(&self, scene: &Scene, triangle: usize) -> bool {
+        scene.is_there(self.instance[triangle] as usize) && self.normal(triangle) != DVec3::ZERO
     }
 
-    /// Whether the triangle can block light: its instance is solid and its corners do not coincide.
-    pub fn is_solid(&self, scene: &Scene, triangle: usize) -> bool {
-        let instance = self.instance[triangle] as usize;
-        self.is_solid_instance(scene, instance) && self.normal(triangle) != DVec3::ZERO
+    /// Whether the triangle can block light: its instance casts, and its corners do not coincide.
+    pub fn casts(&self, scene: &Scene, triangle: usize) -> bool {
+        scene.casts(self.instance[triangle] as usize) && self.normal(triangle) != DVec3::ZERO
+    }
+
+    /// Whether the triangle can be shaded: its instance takes shadows, and its corners do not coincide.
+    pub fn receives(&self, scene: &Scene, triangle: usize) -> bool {
+        scene.receives(self.instance[triangle] as usize) && self.normal(triangle) != DVec3::ZERO
     }
 }

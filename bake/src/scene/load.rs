@@ -1,7 +1,7 @@
 //! Loads a file into a [`Scene`]. Each step has a module of its own.
 
 use super::{
-    Dropped, Instance, LoadError, LoadLimits, Mesh, Scene, SceneCamera, Source,
+    Dropped, Instance, LoadError, LoadLimits, Mesh, Role, Scene, SceneCamera, Source,
     accessors::Reader,
     cameras, container,
     container::Container,
@@ -14,6 +14,7 @@ use super::{
     primitives::{self, DrawnMeshes},
     refuse,
     resources::{Buffers, Fetcher},
+    roles,
 };
 use glam::{DMat4, DVec3};
 use std::{
@@ -70,7 +71,7 @@ fn parse_within(path: &Path, bytes: &Arc<Vec<u8>>, budget: &MemoryBudget) -> Res
     let centre_m = bounds.rounded_centre();
     let cameras: Vec<SceneCamera> = cameras::read(&doc, &tree, centre_m, &mut log);
     let sun_direction = cameras::sun_direction(&doc, &tree);
-    Ok(Scene {
+    let mut scene = Scene {
         source: source(path, fetcher),
         instances: drawn.draws.iter().map(|&draw| instance(&tree, draw, centre_m)).collect(),
         sun_direction,
@@ -83,8 +84,11 @@ fn parse_within(path: &Path, bytes: &Arc<Vec<u8>>, budget: &MemoryBudget) -> Res
         half_extent_m: (bounds.high - bounds.low) * 0.5,
         dropped: drawn.dropped,
         warnings: log.into_warnings(),
-        file: Some(Arc::new(SceneFile::new(doc, buffers, pictures))),
-    })
+        file: None,
+    };
+    roles::read(&doc, &mut scene)?;
+    scene.file = Some(Arc::new(SceneFile::new(doc, buffers, pictures)));
+    Ok(scene)
 }
 
 /// Memory that a drawn triangle takes in geometry and BVH.
@@ -184,5 +188,5 @@ fn drop_undrawn(drawn: &mut DrawnMeshes) {
 fn instance(tree: &NodeTree, (node, mesh): (usize, usize), centre_m: DVec3) -> Instance {
     let mut bake_from_object = tree.nodes.get(node).map_or(DMat4::IDENTITY, |node| node.world_from_node);
     bake_from_object.w_axis -= centre_m.extend(0.0);
-    Instance { node, mesh, bake_from_object, is_mirrored: bake_from_object.determinant() < 0.0 }
+    Instance { node, mesh, bake_from_object, is_mirrored: bake_from_object.determinant() < 0.0, role: Role::default() }
 }

@@ -3,7 +3,7 @@
 //! `BLEND` surfaces are read as alpha masks with a cutoff of one half. `MASK` and `BLEND` are simplified here, from the
 //! range of alpha that a surface can have (factor times texture times vertex colour): if alpha is never below the
 //! cutoff, the surface is opaque and nothing has to sample it; a blended surface that never reaches the cutoff is
-//! invisible.
+//! clear: light passes it, and nothing has to sample it either.
 
 use super::{
     Alpha, LoadError, Material, TextureRef, Wrap,
@@ -17,6 +17,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Least alpha at which a `BLEND` surface is solid.
 pub const BLEND_CUTOFF: f32 = 0.5;
+
+/// Least `transmissionFactor` of a clear surface.
+const CLEAR_TRANSMISSION: f32 = 0.5;
 
 /// A material before its image is decoded: [`TextureRef::image`] is still an index into the file's images.
 pub(super) struct DraftMaterial {
@@ -57,6 +60,7 @@ fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMate
         _ => None,
     };
     let strength = file.extensions.emissive_strength.as_ref().and_then(|e| e.emissive_strength).unwrap_or(1.0);
+    let transmission = file.extensions.transmission.as_ref();
     let mut material = Material {
         name: file.name.clone(),
         gltf: (index != usize::MAX).then_some(index),
@@ -67,6 +71,7 @@ fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMate
         alpha: Alpha::Opaque,
         is_double_sided: file.double_sided,
         is_unlit: file.extensions.unlit.is_some(),
+        is_clear: transmission.and_then(|e| e.transmission_factor).unwrap_or(0.0) >= CLEAR_TRANSMISSION,
     };
     let (factor, texture) = file.base_color();
     material.base_color = Vec4::from_array(factor).clamp(Vec4::ZERO, Vec4::ONE);
@@ -156,6 +161,7 @@ pub(super) fn finish(
             low: factor * texture_alpha.low * vertex.low,
             high: factor * texture_alpha.high * vertex.high,
         };
+        draft.material.is_clear |= draft.is_blended && range.high < BLEND_CUTOFF;
         draft.material.alpha = draft.cutoff.map_or(Alpha::Opaque, |cutoff| range.masked_at(cutoff, draft.is_blended));
         Ok(draft.material)
     };
@@ -177,7 +183,8 @@ impl AlphaRange {
     fn masked_at(self, cutoff: f32, is_blended: bool) -> Alpha {
         match (self.low >= cutoff, self.high >= cutoff) {
             (true, _) => Alpha::Opaque,
-            (_, false) if is_blended => Alpha::Invisible,
+            (_, false) if is_blended && self.high <= 0.0 => Alpha::Invisible,
+            (_, false) if is_blended => Alpha::Opaque,
             _ => Alpha::Mask { cutoff },
         }
     }
@@ -224,7 +231,8 @@ mod tests {
         assert_eq!(masked(0.0, 1.0, 0.5), Alpha::Mask { cutoff: 0.5 });
         assert_eq!(masked(0.0, 1.0, 0.0), Alpha::Opaque, "nothing is below a cutoff of 0");
         assert_eq!(masked(0.0, 1.0, 1.0), Alpha::Mask { cutoff: 1.0 }, "alpha 1 reaches a cutoff of 1");
-        assert_eq!(masked(0.0, 0.49, 0.5), Alpha::Invisible);
+        assert_eq!(masked(0.0, 0.49, 0.5), Alpha::Opaque, "glass can be seen");
+        assert_eq!(masked(0.0, 0.0, 0.5), Alpha::Invisible);
         assert_eq!(masked(0.5, 0.5, 0.5), Alpha::Opaque);
         let mask = AlphaRange { low: 0.0, high: 0.4 }.masked_at(0.5, false);
         assert_eq!(mask, Alpha::Mask { cutoff: 0.5 }, "a mask remains a mask even if it hides everything");

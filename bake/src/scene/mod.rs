@@ -41,10 +41,12 @@ mod materials;
 mod names;
 mod nodes;
 mod normals;
+mod objects;
 mod pose;
 mod primitives;
 mod refuse;
 mod resources;
+mod roles;
 mod shading;
 #[cfg(test)]
 mod tests;
@@ -59,8 +61,11 @@ pub use limits::{LoadLimits, SceneWarning};
 pub use load::{load, parse};
 pub use materials::BLEND_CUTOFF;
 pub use names::{Selection, names};
-pub(crate) use names::{each_once, first_of};
+pub(crate) use names::{each_once, first_of, label_of};
+pub use objects::{ObjectError, ObjectWishes, Wish};
 pub use resources::sha256;
+pub use roles::Role;
+pub(crate) use roles::is_density;
 pub use shading::ShadingNormals;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
@@ -191,6 +196,8 @@ pub struct Instance {
     pub bake_from_object: DMat4,
     /// Whether the matrix mirrors (negative determinant): the winding is reversed, but the front stays the front.
     pub is_mirrored: bool,
+    /// Whether it casts shadows, takes them, and how dense its texels are.
+    pub role: Role,
 }
 
 /// A surface's material, as far as sunbake draws and traces it.
@@ -212,10 +219,14 @@ pub struct Material {
     pub is_double_sided: bool,
     /// `KHR_materials_unlit`: drawn in its base colour, without shading.
     pub is_unlit: bool,
+    /// Whether it lets light through: it transmits at least half of it, or is `BLEND` and nowhere half opaque. Such
+    /// surfaces neither cast nor take shadows, unless their file says otherwise ([`Role`]).
+    pub is_clear: bool,
 }
 
-/// What alpha means for light and for the eye. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least
-/// half opaque casts and shows, what is less does neither (see docs/decisions.md, "Blended materials").
+/// What alpha means for light. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least half opaque casts,
+/// what is less does not (see docs/decisions.md, "Blended materials"). A surface that is less everywhere is opaque to
+/// the eye and [clear](Material::is_clear) to light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
     /// Alpha is ignored.
@@ -225,7 +236,7 @@ pub enum Alpha {
         /// Least alpha of a solid point, 0 to 1 (0: every point is solid).
         cutoff: f32,
     },
-    /// No point reaches the cutoff, or the user left the material out: not drawn, not traced and not baked.
+    /// The user left the surface out, or it is blended with an alpha of 0: not drawn, not traced and not baked.
     Invisible,
 }
 

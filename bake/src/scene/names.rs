@@ -46,10 +46,42 @@ impl Selection {
         }
     }
 
+    /// Instances that it means, those that have one of its materials included.
+    pub fn all_instances(&self, scene: &Scene) -> BTreeSet<u32> {
+        let has_material = |index: &usize| {
+            let material = scene.meshes[scene.instances[*index].mesh].material;
+            self.materials.binary_search(&material).is_ok()
+        };
+        let of_materials = (0..scene.instances.len()).filter(has_material);
+        self.instances.iter().copied().chain(of_materials).map(|index| index as u32).collect()
+    }
+
     /// Whether the text names nothing.
     pub fn is_empty(&self) -> bool {
         self.materials.is_empty() && self.instances.is_empty()
     }
+}
+
+/// What a message calls instances, and a text that selects them and nothing else; of what cannot be told apart, a text
+/// that selects more.
+pub(crate) fn label_of(scene: &Scene, instances: &BTreeSet<u32>) -> (String, String) {
+    let first = instances.first().map_or(0, |&index| index as usize);
+    let instance = &scene.instances[first];
+    let (node, mesh) = (&scene.nodes[instance.node], &scene.meshes[instance.mesh]);
+    let material = scene.material(first);
+    let of_node = (instances.len() == 1).then_some(("node", &node.name, Some(node.gltf)));
+    let of_mesh = (instances.len() == 1).then_some(("mesh", &mesh.name, Some(mesh.gltf.0)));
+    let kinds = [of_node, of_mesh, Some(("material", &material.name, material.gltf))].into_iter().flatten();
+    let by_name = |(kind, name, _): (&str, &Option<String>, _)| {
+        name.as_ref().map(|name| (format!("{kind} \"{name}\""), name.clone()))
+    };
+    let by_index = |(kind, _, index): (&str, _, Option<usize>)| {
+        index.map(|index| (format!("{kind} {index}"), format!("{kind}:{index}")))
+    };
+    let names = kinds.clone().filter_map(by_name);
+    let all: Vec<(String, String)> = names.chain(kinds.filter_map(by_index)).collect();
+    let selecting = all.iter().find(|(_, text)| Selection::new(scene, text).all_instances(scene) == *instances);
+    selecting.or(all.last()).cloned().unwrap_or_default()
 }
 
 /// Names that a scene's parts have, each once: of materials, of nodes that draw, of meshes.

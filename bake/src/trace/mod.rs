@@ -85,9 +85,17 @@ pub struct Occluder(u32);
 impl Tracer {
     /// Builds the hierarchy over every triangle that blocks light.
     pub fn new(scene: &Scene, geometry: &Geometry) -> Self {
+        Self::over(scene, geometry, |triangle| geometry.casts(scene, triangle))
+    }
+
+    /// Builds the hierarchy over every triangle that can be seen, for rays from the eye.
+    pub fn of_visible(scene: &Scene, geometry: &Geometry) -> Self {
+        Self::over(scene, geometry, |triangle| geometry.is_there(scene, triangle))
+    }
+
+    fn over(scene: &Scene, geometry: &Geometry, holds: impl Fn(usize) -> bool) -> Self {
         let tracer_from_bake = scale_to_tracer_space(geometry);
-        let solid: Vec<u32> =
-            (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(scene, i)).map(|i| i as u32).collect();
+        let solid: Vec<u32> = (0..geometry.triangles.len()).filter(|&i| holds(i)).map(|i| i as u32).collect();
         let scaled = |&i: &u32| geometry.triangles[i as usize].map(|v| (v.as_dvec3() * tracer_from_bake).as_vec3());
         let padding = Vec3A::splat(BOX_PADDING * 1024.0);
         let boxes: Vec<PaddedBox> = solid.iter().map(|i| PaddedBox::new(scaled(i), padding)).collect();

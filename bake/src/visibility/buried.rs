@@ -9,8 +9,8 @@
 //! of them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
 //! distance the backs of double-sided surfaces are walls of a room.)
 
-use crate::ambient::hemisphere_directions;
-use crate::atlas::{self, PageSamples, PageSize, SurfacePoint};
+use crate::ambient::{back_comes_first, hemisphere_directions};
+use crate::atlas::{self, Around, PageSamples, PageSize, SurfacePoint};
 use crate::intervals::{IntervalTable, Intervals};
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, Tracer};
@@ -22,39 +22,37 @@ use std::collections::HashMap;
 const RAYS: u32 = 16;
 /// Share of the path below which a texel may be buried.
 const DARK: f64 = 0.05;
-/// A front that is farther than a back by no more than this share of the distance counts as coincident.
-const COINCIDENT: f64 = 1e-5;
 
 /// Finds buried points.
 pub(crate) struct BuriedPoints<'a> {
     pub scene: &'a Scene,
     pub geometry: &'a Geometry,
     pub tracer: &'a Tracer,
-    /// Width of a texel.
-    pub texel_m: f64,
+    /// For each instance, the width of a texel.
+    pub texel_m: Vec<f64>,
 }
 
 impl BuriedPoints<'_> {
     /// Whether a point lies inside a solid, or right under something.
     pub fn is_buried(&self, point: &SurfacePoint) -> bool {
+        let texel_m = self.texel_m[self.geometry.instance[point.triangle as usize] as usize];
         let sides: &[f64] = if point.is_double_sided { &[1.0, -1.0] } else { &[1.0] };
         sides.iter().all(|side| {
             let normal = point.normal * *side;
             let from = self.tracer.lift(point.position_m, normal, point.triangle);
-            hemisphere_directions(normal, RAYS).all(|direction| self.meets_back(from, direction))
+            hemisphere_directions(normal, RAYS).all(|direction| self.meets_back(from, direction, texel_m))
         })
     }
 
-    fn meets_back(&self, from: DVec3, direction: DVec3) -> bool {
+    fn meets_back(&self, from: DVec3, direction: DVec3, texel_m: f64) -> bool {
         let along = Direction::new(direction);
         let is_back = |triangle: u32| self.geometry.normal(triangle as usize).dot(direction) > 0.0;
         let Some(hit) = self.tracer.closest_hit(from, &along) else { return false };
         let instance = self.geometry.instance[hit.triangle as usize] as usize;
-        if !is_back(hit.triangle) || (self.scene.material(instance).is_double_sided && hit.distance_m > self.texel_m) {
+        if !is_back(hit.triangle) || (self.scene.material(instance).is_double_sided && hit.distance_m > texel_m) {
             return false;
         }
-        let front = self.tracer.closest_hit_where(from, &along, |triangle| !is_back(triangle));
-        front.is_none_or(|front| front.distance_m > hit.distance_m * (1.0 + COINCIDENT) + self.tracer.run_up_m())
+        back_comes_first(self.tracer, from, &along, hit.distance_m, is_back)
     }
 }
 
@@ -94,21 +92,10 @@ pub(crate) fn fill_buried(
     for (place, &sample) in (0..).zip(order) {
         place_of[samples[sample as usize].texel as usize] = place;
     }
-    let width = size.width as usize;
-    let is_open = |texel: usize, way: usize| walls.is_none_or(|codes| atlas::is_open(codes[texel][way]));
-    // From a texel to one beside it or diagonal to it, by way of the one beside.
-    let reaches = |[x, y]: [usize; 2], [to_x, to_y]: [usize; 2]| {
-        let level = x == to_x || is_open(y * width + x.min(to_x), 0);
-        level && (y == to_y || is_open(y.min(to_y) * width + to_x, 1))
-    };
+    let around = Around::new(size, walls);
     let neighbours = |place: usize| {
-        let texel = samples[order[place] as usize].texel as usize;
-        let at @ [x, y] = [texel % width, texel / width];
-        let columns = x.saturating_sub(1)..(x + 2).min(width);
-        let rows = y.saturating_sub(1)..(y + 2).min(size.height as usize);
-        let texels = rows.flat_map(|y| columns.clone().map(move |x| [x, y])).filter(|to| *to != at && reaches(at, *to));
-        let places = texels.map(|[x, y]| place_of[y * width + x]).filter(|&other| other != NONE);
-        places.map(|other| other as usize).collect::<Vec<_>>()
+        let places = around.texels(samples[order[place] as usize].texel as usize).map(|texel| place_of[texel]);
+        places.filter(|&other| other != NONE).map(|other| other as usize).collect::<Vec<_>>()
     };
     let is_buried = |place: usize| {
         let point = atlas::surface_point(buried.scene, buried.geometry, &samples[order[place] as usize]);

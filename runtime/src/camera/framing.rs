@@ -46,7 +46,7 @@ fn framed(stage: &Stage, aspect: f64) -> Camera {
         .flat_map(|i| ELEVATIONS_DEG.map(|(elevation, _)| (f64::from(i) * 360.0 / f64::from(BEARINGS), elevation)))
         .collect();
     // The tracer is built before the parallel loop uses it.
-    stage.tracer();
+    stage.eye_tracer();
     let scored = candidates.par_iter().filter_map(|&(bearing_deg, elevation_deg)| {
         let camera = standing_back(&points, middle, towards(bearing_deg, elevation_deg), aspect)?;
         Some((preference(bearing_deg, elevation_deg) * seen(stage, &camera, &points) as f64, camera))

@@ -6,7 +6,7 @@ use super::values::{parse_range, parse_size, parse_technique};
 use super::when::parse_when;
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
-use sunbake::console::SunArgs;
+use sunbake::console::{ObjectArgs, SunArgs};
 use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::light::TimeChoice;
 use sunbake_runtime::shadow_maps::{Bias, Variant};
@@ -16,6 +16,8 @@ use sunbake_runtime::{AmbientModel, Filter};
 
 /// Heading of the sun's options. A set has its own sun.
 pub const SUN_HEADING: &str = "Sun of a scene that is not baked";
+/// Heading of the options that say what becomes of objects.
+pub const OBJECTS_HEADING: &str = "Objects of a scene that is not baked";
 
 /// Plays sunbake's maps back at any time of the day.
 #[derive(Debug, Parser)]
@@ -58,6 +60,8 @@ pub struct FrameArgs {
     pub output_file: PathBuf,
     #[command(flatten, next_help_heading = SUN_HEADING)]
     pub sun: SunArgs,
+    #[command(flatten, next_help_heading = OBJECTS_HEADING)]
+    pub objects: ObjectArgs,
     #[command(flatten)]
     pub look: LookArgs,
     /// What the picture shows.
@@ -81,6 +85,8 @@ pub struct FramesArgs {
     pub output_folder: PathBuf,
     #[command(flatten, next_help_heading = SUN_HEADING)]
     pub sun: SunArgs,
+    #[command(flatten, next_help_heading = OBJECTS_HEADING)]
+    pub objects: ObjectArgs,
     #[command(flatten)]
     pub look: LookArgs,
     /// What the pictures show.

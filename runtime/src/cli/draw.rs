@@ -3,7 +3,8 @@
 use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use clap::ValueEnum;
 use std::path::Path;
-use sunbake::console::{Command, Failure, SunArgs, tell, warn_all};
+use sunbake::BakeError;
+use sunbake::console::{Command, Failure, ObjectArgs, SunArgs, tell, warn_all};
 use sunbake::scene::LoadLimits;
 use sunbake_runtime::gpu::{Gpu, GpuError, Output, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
@@ -129,7 +130,13 @@ pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
 
 /// The set in a folder, with those of its maps that the lights and the model of ambient light call for; or a scene that
 /// is not baked, under a sun.
-pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) -> Result<Stage, Failure> {
+pub fn stage(
+    from: &Path,
+    sun: &SunArgs,
+    objects: &ObjectArgs,
+    look: &LookArgs,
+    output: OutputChoice,
+) -> Result<Stage, Failure> {
     let is_baked = look.technique == TechniqueChoice::Baked;
     let is_volumes = matches!(look.technique, TechniqueChoice::Volumes(_));
     if output == OutputChoice::Volumes && !is_volumes {
@@ -160,11 +167,12 @@ pub fn stage(from: &Path, sun: &SunArgs, look: &LookArgs, output: OutputChoice) 
                 from.display()
             )));
         }
-        return plain_stage(from, sun);
+        return plain_stage(from, sun, objects);
     }
-    if sun.is_given() {
+    if sun.is_given() || objects.is_given() {
         return Err(Failure::usage(
-            "a set has the sun that it was baked with: leave --place, --date, --utc-offset and --north out",
+            "a set has the sun and the objects that it was baked with: leave --place, --date, --utc-offset, --north, \
+             --leave-out, --no-cast and --no-receive out",
         ));
     }
     let stage = Stage::read(from)?;
@@ -216,8 +224,9 @@ fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
 }
 
 /// A scene that is not baked, under a sun.
-fn plain_stage(file: &Path, sun: &SunArgs) -> Result<Stage, Failure> {
-    let scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+fn plain_stage(file: &Path, sun: &SunArgs, objects: &ObjectArgs) -> Result<Stage, Failure> {
+    let mut scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
+    objects.wishes().apply_to(&mut scene).map_err(BakeError::Objects)?;
     let request = sun.request(None)?;
     let mut warnings = Vec::new();
     let path = sunbake::sun_path(&request, &scene, &mut warnings)?;

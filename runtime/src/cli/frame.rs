@@ -13,7 +13,7 @@ use sunbake_runtime::light::clock_label;
 pub fn run(args: &FrameArgs) -> Result<(), Failure> {
     kind(&args.output_file)?;
     set_threads(args.look.threads)?;
-    let stage = stage(&args.set, &args.sun, &args.look, args.output)?;
+    let stage = stage(&args.set, &args.sun, &args.objects, &args.look, args.output)?;
     let t = args.at.on(stage.path.as_ref())?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let moment = moment(&stage, &args.look, t)?;

@@ -20,7 +20,7 @@ const ANIMATION_MS: [u32; 2] = [6000, 400];
 /// Draws a day.
 pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     set_threads(args.look.threads)?;
-    let stage = stage(&args.set, &args.sun, &args.look, args.output)?;
+    let stage = stage(&args.set, &args.sun, &args.objects, &args.look, args.output)?;
     let shot = Shot::new(&stage, view(&stage, &args.look)?);
     let gpu = open_gpu(&args.look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;

@@ -191,7 +191,7 @@ impl<'a> ReceiverPoint<'a> {
             };
             !is_far(0)
                 && !is_far(1)
-                && geometry.is_solid(scene, i)
+                && geometry.casts(scene, i)
                 && distance_to_polygon(&above(&flat, &heights)) <= reach_m
         })
     }

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use sunbake::disk::read::read_manifest;
 use sunbake::maps::Bits;
-use sunbake::scene::LoadLimits;
+use sunbake::scene::{LoadLimits, ObjectWishes};
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::{BakeError, Prepared};
 use tempfile::TempDir;
@@ -42,7 +42,7 @@ struct SceneBake<'a> {
     file: &'a Path,
     sun: &'a SunRequest,
     page_size_texels: u32,
-    leave_out: &'a [String],
+    objects: &'a ObjectWishes,
     threads: usize,
 }
 
@@ -50,12 +50,12 @@ impl ComparisonInputs {
     pub fn of(settings: &CompareSettings, progress: &dyn CompareProgress) -> Result<Self, CompareError> {
         match &settings.source {
             CompareSource::Set { folder, scene } => Self::of_set(settings, folder, scene.as_deref()),
-            CompareSource::Scene { file, sun, page_size_texels, leave_out } => {
+            CompareSource::Scene { file, sun, page_size_texels, objects } => {
                 let bake = SceneBake {
                     file,
                     sun,
                     page_size_texels: page_size_texels.unwrap_or(PAGE_SIZE_TEXELS),
-                    leave_out,
+                    objects,
                     threads: settings.threads,
                 };
                 Self::of_scene(settings, &bake, progress)
@@ -128,7 +128,7 @@ impl SceneBake<'_> {
     fn settings(&self, lane_count: usize) -> BakeSettings {
         BakeSettings {
             page_size_texels: self.page_size_texels,
-            leave_out: self.leave_out.to_vec(),
+            objects: self.objects.clone(),
             lane_count,
             ambient: None,
             threads: self.threads,

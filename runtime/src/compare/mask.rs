@@ -159,7 +159,7 @@ impl Reasons<'_> {
         };
         let segment = [point_m + direction * (pixel_m * f64::from(FINE_PX)), point_m + direction * length_m];
         let passes = |[a, b]: [DVec3; 2]| between(segment, [a, b]) < pixel_m * GRAZING_PX;
-        let casts = |triangle: &usize| stage.geometry.is_solid(&stage.scene, *triangle);
+        let casts = |triangle: &usize| stage.geometry.casts(&stage.scene, *triangle);
         (0..stage.geometry.triangles.len()).filter(casts).any(|triangle| {
             let [a, b, c] = stage.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
             passes([a, b]) || passes([b, c]) || passes([c, a])

@@ -6,6 +6,7 @@ use crate::light::TimeChoice;
 use std::path::PathBuf;
 use sunbake::Warning;
 use sunbake::progress::{Progress, Silent};
+use sunbake::scene::ObjectWishes;
 use sunbake::settings::SunRequest;
 
 /// Everything that a comparison is told.
@@ -51,8 +52,8 @@ pub enum CompareSource {
         sun: SunRequest,
         /// Edge of the page it is baked into, in texels. None: 2048.
         page_size_texels: Option<u32>,
-        /// Materials that are neither baked nor drawn, by name.
-        leave_out: Vec<String>,
+        /// What is asked for objects by name.
+        objects: ObjectWishes,
     },
 }
 

@@ -36,7 +36,7 @@ impl ShadowScene {
         let ground = Ground::new(stage);
         let triangles = &stage.geometry.triangles;
         let all = 0..triangles.len();
-        let casts = |i: &usize| ground.lets_cast(*i) && stage.geometry.is_solid(&stage.scene, *i);
+        let casts = |i: &usize| ground.lets_cast(*i) && stage.geometry.casts(&stage.scene, *i);
         let is_drawn = |i: &usize| !stage.sides(*i).is_none();
         let casters_m = all.clone().filter(casts).flat_map(|i| triangles[i]).collect();
         let receivers_m: Vec<Vec3> = all.filter(is_drawn).flat_map(|i| triangles[i]).collect();

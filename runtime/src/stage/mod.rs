@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 use sunbake::lamp::LampPath;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
-use sunbake::scene::{Alpha, Geometry, Material, Mesh, Scene, ShadingNormals};
+use sunbake::scene::{Geometry, Material, Mesh, Scene, ShadingNormals};
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
 
@@ -41,6 +41,8 @@ pub struct Stage {
     mips: Vec<Option<MipChain>>,
     /// Built on first use: drawing on the GPU needs none.
     tracer: OnceLock<Tracer>,
+    /// What the eye sees, where that is more than what casts.
+    eye_tracer: OnceLock<Option<Tracer>>,
 }
 
 /// Where an instance's texels lie: `page_uv = texcoords[uv_set] * scale + offset`.
@@ -81,12 +83,11 @@ impl Stage {
         scene.file = None;
         let normals = ShadingNormals::new(&scene);
         let geometry = Geometry::new(&scene);
-        let is_drawn =
-            |instance: usize| charts[instance].is_some() && scene.material(instance).alpha != Alpha::Invisible;
+        let is_drawn = |instance: usize| charts[instance].is_some() && scene.is_there(instance);
         let sides = drawn_sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
-        let tracer = OnceLock::new();
-        Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer }
+        let (tracer, eye_tracer) = (OnceLock::new(), OnceLock::new());
+        Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer, eye_tracer }
     }
 
     /// The lamp at path time `t`, if there is one.
@@ -99,11 +100,22 @@ impl Stage {
         Moment::new(self.path.as_ref(), t).with_lamp(self.lamp_moment(t))
     }
 
-    /// The ray tracer of this scene. The first call builds it, on all threads. Make that call before a parallel loop
+    /// The ray tracer of what casts. The first call builds it, on all threads. Make that call before a parallel loop
     /// that uses it: a thread that waits for the build may take up another task of the loop, which waits for the same
     /// build.
     pub fn tracer(&self) -> &Tracer {
         self.tracer.get_or_init(|| Tracer::new(&self.scene, &self.geometry))
+    }
+
+    /// The ray tracer of what the eye sees: the same, unless light passes something. As [`Stage::tracer`], it is built
+    /// by the first call.
+    pub fn eye_tracer(&self) -> &Tracer {
+        let is_passed = |instance: usize| self.scene.is_there(instance) && !self.scene.casts(instance);
+        let own = self.eye_tracer.get_or_init(|| {
+            let differs = (0..self.scene.instances.len()).any(is_passed);
+            differs.then(|| Tracer::of_visible(&self.scene, &self.geometry))
+        });
+        own.as_ref().unwrap_or_else(|| self.tracer())
     }
 
     /// Where an instance's texels lie.
@@ -176,7 +188,7 @@ impl Stage {
     /// The first hit of a primary ray: the nearest surface that is drawn and turns a drawn side to the eye.
     pub fn primary_hit(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
         let direction = direction.normalize();
-        self.tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
+        self.eye_tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
             let sides = self.sides[triangle as usize];
             match sides.front == sides.back {
                 true => sides.front,

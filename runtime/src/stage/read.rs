@@ -6,9 +6,10 @@ use std::collections::HashMap;
 use std::path::Path;
 use sunbake::Bake;
 use sunbake::disk::manifest::InstanceEntry;
-use sunbake::maps::{Bits, PageMaps};
+use sunbake::maps::{Bits, LaneMaps, PageEncoder, PageMaps};
 use sunbake::scene::{LoadError, LoadLimits, Scene};
 use sunbake::sun::SunPath;
+use sunbake::visibility::Intervals;
 
 /// Memory that loading a scene may take, in bytes.
 pub const MAX_SCENE_BYTES: u64 = 16 << 30;
@@ -66,7 +67,7 @@ impl Stage {
             let (file, found) = (file.display().to_string(), scene.source.sha256);
             return Err(StageError::Changed { file, found, baked });
         }
-        set.manifest.leave_out(&mut scene);
+        set.manifest.apply_roles(&mut scene);
         let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
@@ -95,9 +96,30 @@ impl Stage {
         bits: Bits,
         path: Option<SunPath>,
     ) -> Result<Self, StageError> {
-        let charts = charts(&scene, instances, pages.len())?;
+        let mut charts = charts(&scene, instances, pages.len())?;
+        let pages = with_open_page(&scene, &mut charts, pages, bits);
         Ok(Self::with_charts(scene, charts, pages, bits, path))
     }
+}
+
+/// Gives what nothing shades a page of one texel that always sees every light, so that it is drawn as everything else.
+fn with_open_page(scene: &Scene, charts: &mut [Option<Chart>], mut pages: Vec<PageMaps>, bits: Bits) -> Vec<PageMaps> {
+    let page = pages.len() as u32;
+    let is_open = |index: usize| scene.is_there(index) && !scene.receives(index);
+    let chart = Chart { page, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::splat(0.5) };
+    (0..charts.len()).filter(|&index| is_open(index)).for_each(|index| charts[index] = Some(chart));
+    if charts.iter().flatten().any(|chart| chart.page == page) {
+        let lit = || {
+            let mut encoder = PageEncoder::new(1, bits, 1);
+            encoder.set(0, &Intervals::always());
+            encoder.finish()
+        };
+        let lanes = pages.iter().map(|page| &page.lanes).find(|lanes| !lanes.is_empty());
+        let lanes = lanes.into_iter().flatten().map(|lane| LaneMaps { lane: lane.lane, layers: lit() }).collect();
+        let lamp = pages.iter().any(|page| page.lamp.is_some()).then(lit);
+        pages.push(PageMaps { width: 1, height: 1, lanes, lamp, ambient: None, walls: None });
+    }
+    pages
 }
 
 /// Where the texels of each instance lie.

@@ -43,7 +43,7 @@ impl Truth {
     fn lamp_visibility_from(
         self,
         stage: &Stage,
-        &ShadowRayOrigin { geometric_normal, on_plane_m, point_m, origin_m }: &ShadowRayOrigin,
+        &ShadowRayOrigin { geometric_normal, on_plane_m, point_m, origin_m, is_open }: &ShadowRayOrigin,
         pixel: usize,
         lamp: &Sphere,
     ) -> f32 {
@@ -52,7 +52,8 @@ impl Truth {
         }
         let tracer = stage.tracer();
         let reaches = |lamp_m: DVec3| {
-            geometric_normal.dot(lamp_m - on_plane_m) > 0.0 && tracer.occluder_before(origin_m, lamp_m).is_none()
+            geometric_normal.dot(lamp_m - on_plane_m) > 0.0
+                && (is_open || tracer.occluder_before(origin_m, lamp_m).is_none())
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
@@ -80,7 +81,7 @@ impl Truth {
     fn sun_visibility_from(
         self,
         stage: &Stage,
-        &ShadowRayOrigin { geometric_normal, origin_m, .. }: &ShadowRayOrigin,
+        &ShadowRayOrigin { geometric_normal, origin_m, is_open, .. }: &ShadowRayOrigin,
         pixel: usize,
         sun: &SunDisc,
     ) -> f32 {
@@ -88,7 +89,7 @@ impl Truth {
         let reaches = |direction: DVec3| {
             direction.y > 0.0
                 && geometric_normal.dot(direction) > 0.0
-                && !tracer.is_occluded(origin_m, &Direction::new(direction))
+                && (is_open || !tracer.is_occluded(origin_m, &Direction::new(direction)))
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(sun.centre))),
@@ -108,6 +109,8 @@ struct ShadowRayOrigin {
     on_plane_m: DVec3,
     point_m: DVec3,
     origin_m: DVec3,
+    /// Whether nothing shades the surface.
+    is_open: bool,
 }
 
 impl ShadowRayOrigin {
@@ -122,6 +125,7 @@ impl ShadowRayOrigin {
             on_plane_m,
             point_m,
             origin_m: stage.tracer().lift(point_m, geometric_normal, hit.triangle),
+            is_open: !stage.scene.receives(stage.geometry.instance[triangle] as usize),
         }
     }
 }

@@ -102,6 +102,8 @@ fn lay_out(scene: &mut Scene, geometry: &Geometry, columns: u32, cell: u32) -> V
             node: instance.node,
             primitive: mesh.gltf.1,
             atlas: Some(0),
+            casts: true,
+            receives: true,
             uv_set: 1,
             uv_scale: [1.0; 2],
             uv_offset: [0.0; 2],

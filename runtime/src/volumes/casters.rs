@@ -98,7 +98,7 @@ impl Casters {
     pub fn new(stage: &Stage) -> Self {
         let geometry = &stage.geometry;
         let flat: Vec<u32> =
-            (0..geometry.triangles.len()).filter(|&i| geometry.is_solid(&stage.scene, i)).map(|i| i as u32).collect();
+            (0..geometry.triangles.len()).filter(|&i| geometry.casts(&stage.scene, i)).map(|i| i as u32).collect();
         let corners_m: Vec<[Vec3; 3]> = flat.iter().map(|&i| from_front(stage, i as usize)).collect();
         let welded = Welded::new(&corners_m);
         let bodies = Bodies::new(&welded, &corners_m, &flat, stage.tracer());

@@ -153,6 +153,8 @@ fn a_second_page_adds_its_textures_and_a_draw() {
         node: instance.node,
         primitive: one.scene.meshes[instance.mesh].gltf.1,
         atlas: Some(index as u32),
+        casts: true,
+        receives: true,
         uv_set: 1,
         uv_scale: [1.0; 2],
         uv_offset: [0.0; 2],

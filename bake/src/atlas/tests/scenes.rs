@@ -1,6 +1,6 @@
 //! Scenes built by code.
 
-use crate::scene::{Alpha, Dropped, Instance, Material, Mesh, Node, Scene, Source};
+use crate::scene::{Alpha, Dropped, Instance, Material, Mesh, Node, Role, Scene, Source};
 use glam::{DMat4, DVec3, Vec2, Vec3, Vec4};
 
 /// A scene of these meshes, each under these matrices.
@@ -34,6 +34,7 @@ pub fn scene(parts: Vec<(Mesh, Vec<DMat4>)>) -> Scene {
                 mesh: scene.meshes.len(),
                 bake_from_object: matrix,
                 is_mirrored: matrix.determinant() < 0.0,
+                role: Role::default(),
             });
         }
         scene.meshes.push(mesh);
@@ -51,6 +52,7 @@ fn material(alpha: Alpha) -> Material {
         alpha,
         is_double_sided: false,
         is_unlit: false,
+        is_clear: false,
     }
 }
 

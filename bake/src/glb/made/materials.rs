@@ -65,9 +65,13 @@ impl MadeMaterials {
                 written["alphaMode"] = json!("MASK");
                 written["alphaCutoff"] = json!(cutoff);
             }
-            Alpha::Invisible => written["alphaMode"] = json!("BLEND"),
+            Alpha::Invisible => written["extras"] = json!({ "sunbake_leave_out": true }),
         }
         let mut extensions = Map::new();
+        if material.is_clear && material.alpha != Alpha::Invisible {
+            let name = self.extension("KHR_materials_transmission");
+            extensions.insert(name, json!({ "transmissionFactor": 1.0 }));
+        }
         self.add_emission(material, &mut written, &mut extensions);
         if material.is_unlit {
             extensions.insert(self.extension("KHR_materials_unlit"), json!({}));

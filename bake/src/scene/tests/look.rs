@@ -31,11 +31,12 @@ const SOLID: [u8; 4] = [9, 9, 9, 255];
 
 /// B13.
 #[test]
-fn blended_surfaces_are_masked_at_one_half_and_invisible_where_nothing_reaches_it() {
+fn blended_surfaces_are_masked_at_one_half_and_clear_where_nothing_reaches_it() {
     let blend = || json!({ "alphaMode": "BLEND" });
     assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, SOLID]), Alpha::Mask { cutoff: 0.5 });
-    assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Invisible, "glass");
-    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Invisible, "no point reaches the cutoff");
+    assert_eq!(alpha_of(blend(), 0.4, &[CLEAR, SOLID]), Alpha::Opaque, "glass");
+    assert_eq!(alpha_of(blend(), 1.0, &[CLEAR, [9, 9, 9, 120]]), Alpha::Opaque, "no point reaches the cutoff");
+    assert_eq!(alpha_of(blend(), 0.0, &[SOLID]), Alpha::Invisible, "nothing can be seen");
     assert_eq!(alpha_of(blend(), 1.0, &[HALF, SOLID]), Alpha::Opaque, "no point is below the cutoff");
     assert_eq!(alpha_of(blend(), 0.9, &[HALF, SOLID]), Alpha::Mask { cutoff: 0.5 });
     assert_eq!(alpha_of(json!({}), 0.1, &[CLEAR]), Alpha::Opaque, "OPAQUE ignores alpha");
@@ -54,11 +55,11 @@ fn masks_keep_their_cutoff_and_the_ends_of_its_range_mean_what_they_say() {
 
 #[test]
 fn vertex_alpha_counts() {
-    for (alpha, expected) in [(0.25f32, Alpha::Invisible), (1.0, Alpha::Opaque)] {
+    for (alpha, is_clear) in [(0.25f32, true), (1.0, false)] {
         let mut b = Builder::new();
         let color = b.floats(&[[1.0, 0.5, 2.0, alpha]; 3]);
         let scene = with_material(&mut b, json!({ "COLOR_0": color }), json!({ "alphaMode": "BLEND" }));
-        assert_eq!(scene.materials[0].alpha, expected);
+        assert_eq!((scene.materials[0].alpha, scene.materials[0].is_clear), (Alpha::Opaque, is_clear));
         let colors = scene.meshes[0].colors.as_ref().expect("colours");
         assert_eq!(colors[0], Vec4::new(1.0, 0.5, 1.0, alpha), "colours are clamped");
     }

@@ -185,7 +185,7 @@ fn small_and_large_scenes_are_read_alike() {
     for size in [1e-4, 1.0, 1e4] {
         let scene = Builder::triangle(json!({ "scale": [size, size, size] })).scene();
         assert!((scene.half_extent_m - DVec3::new(0.5, 0.5, 0.0) * size).length() < size * 1e-9);
-        assert!(Geometry::new(&scene).is_solid(&scene, 0));
+        assert!(Geometry::new(&scene).casts(&scene, 0));
     }
 }
 

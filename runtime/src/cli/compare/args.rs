@@ -6,7 +6,7 @@ use super::super::values::parse_size;
 use super::super::when::parse_when;
 use clap::Args as ClapArgs;
 use std::path::PathBuf;
-use sunbake::console::SunArgs;
+use sunbake::console::{DensityArgs, ObjectArgs, SunArgs};
 use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::Limit;
 use sunbake_runtime::light::TimeChoice;
@@ -62,17 +62,14 @@ pub struct CompareArgs {
     /// Of a scene: edge of the page it is baked into, 64 to 16384. [default: 2048]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(64..=16384))]
     pub page_size: Option<u32>,
-    /// Of a scene: leave a material, node or mesh out; it is not drawn, not baked and casts nothing. May be given
-    /// several times.
-    ///
-    /// For surfaces that should cast no shadow: outline hulls, sky domes, collision shells. NAME is read as by
-    /// `sunbake bake`.
-    #[arg(long, value_name = "NAME")]
-    pub leave_out: Vec<String>,
+    #[command(flatten, next_help_heading = "Objects of a scene")]
+    pub objects: ObjectArgs,
+    #[command(flatten, next_help_heading = "Objects of a scene")]
+    pub densities: DensityArgs,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.
     ///
     /// Keys: visibility (mean error), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside
-    /// (mean errors there), dissimilarity (1 less the structural similarity), frame_ms, mib. The report is written all
+    /// (mean errors there), leak (mean light where truth has none), shade (mean shade where it has none), dissimilarity (1 less the structural similarity), frame_ms, mib. The report is written all
     /// the same. Name what it is to hold for with --techniques.
     #[arg(long, value_name = "KEY=N", value_delimiter = ',')]
     pub fail_above: Vec<Limit>,

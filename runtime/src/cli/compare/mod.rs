@@ -61,13 +61,14 @@ fn source(args: &CompareArgs) -> Result<CompareSource, Failure> {
             file: from.clone(),
             sun: args.sun.request(None)?,
             page_size_texels: args.page_size,
-            leave_out: args.leave_out.clone(),
+            objects: args.objects.wishes_with(&args.densities),
         });
     }
-    if args.sun.is_given() || args.page_size.is_some() || !args.leave_out.is_empty() {
+    if args.sun.is_given() || args.page_size.is_some() || args.objects.is_given() || args.densities.is_given() {
         return Err(Failure::usage(
-            "a set has the sun, the texels and the materials that it was baked with: leave --place, --date, \
-             --utc-offset, --north, --page-size and --leave-out out, or compare the scene",
+            "a set has the sun, the texels and the objects that it was baked with: leave --place, --date, \
+             --utc-offset, --north, --page-size, --leave-out, --no-cast, --no-receive and --density out, or compare the \
+             scene",
         ));
     }
     Ok(CompareSource::Set { folder: from.clone(), scene: args.scene.clone() })

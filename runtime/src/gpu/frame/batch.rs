@@ -21,6 +21,10 @@ pub struct BatchKey {
     pub is_ground: bool,
     /// Whether it only casts, and is not drawn.
     pub is_hidden: bool,
+    /// Whether light passes it, so that it does not cast; false unless a ground was given.
+    pub is_passed: bool,
+    /// Whether nothing shades it.
+    pub is_open: bool,
     /// The atlas page.
     pub page: u32,
     /// Image and wrap modes, if textured.
@@ -100,11 +104,13 @@ pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<
             let triangle = triangle as usize;
             let sides = stage.sides(triangle);
             let is_hidden = sides.is_none();
-            if is_hidden && !(ground.is_some() && stage.geometry.is_solid(&stage.scene, triangle)) {
+            let casts = stage.geometry.casts(&stage.scene, triangle);
+            if is_hidden && !(ground.is_some() && casts) {
                 continue;
             }
             let is_ground = ground.is_some_and(|ground| ground.holds(triangle));
-            let key = BatchKey { is_two_sided: sides.front && sides.back, is_ground, is_hidden, ..key };
+            let (is_two_sided, is_passed) = (sides.front && sides.back, ground.is_some() && !casts);
+            let key = BatchKey { is_two_sided, is_ground, is_hidden, is_passed, ..key };
             triangles.entry(key).or_default().push(triangle);
         }
     }
@@ -123,6 +129,8 @@ fn key(stage: &Stage, instance: usize) -> BatchKey {
         is_two_sided: false,
         is_ground: false,
         is_hidden: false,
+        is_passed: false,
+        is_open: !stage.scene.receives(instance),
         page: stage.chart(instance).map_or(0, |chart| chart.page),
         texture,
     }

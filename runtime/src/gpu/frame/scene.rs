@@ -134,5 +134,6 @@ impl SceneOnGpu {
 /// The key of a batch's depth program. Only alpha masks tell surfaces apart there.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
     let surface = if key.surface.has_alpha_mask { key.surface } else { Default::default() };
-    BatchKey { surface, page: 0, texture: None, is_ground: false, is_hidden: false, ..*key }
+    let (is_ground, is_hidden, is_passed, is_open) = (false, false, false, false);
+    BatchKey { surface, page: 0, texture: None, is_ground, is_hidden, is_passed, is_open, ..*key }
 }

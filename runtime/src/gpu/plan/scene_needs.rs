@@ -72,7 +72,7 @@ impl SceneNeeds {
     pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
         let variant = self.variant(key);
         let page = self.pages.iter().position(|page| page.variant == *variant).unwrap_or(0) as u32;
-        BatchKey { page, texture: None, ..*key }
+        BatchKey { page, texture: None, is_passed: false, is_open: false, ..*key }
     }
 
     /// Base colour textures with their samplers.

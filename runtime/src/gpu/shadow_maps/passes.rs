@@ -11,12 +11,17 @@ impl MapRenderer<'_> {
     /// Batches that cast: all, or all but the ground.
     fn casters(&self) -> impl Iterator<Item = &Batch> {
         let casts = self.shadow_scene.ground.casts;
-        self.scene.batches.iter().chain(&self.scene.hidden).filter(move |batch| casts || !batch.key.is_ground)
+        self.all_casters().filter(move |batch| casts || !batch.key.is_ground)
     }
 
     /// Casters on the ground.
     fn casters_on_ground(&self) -> impl Iterator<Item = &Batch> {
-        self.scene.batches.iter().chain(&self.scene.hidden).filter(|batch| !batch.key.is_ground)
+        self.all_casters().filter(|batch| !batch.key.is_ground)
+    }
+
+    /// Batches that light does not pass.
+    fn all_casters(&self) -> impl Iterator<Item = &Batch> {
+        self.scene.batches.iter().chain(&self.scene.hidden).filter(|batch| !batch.key.is_passed)
     }
 
     /// Draws the maps and masks, unless those of the last frame serve.

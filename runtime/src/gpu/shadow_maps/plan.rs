@@ -83,12 +83,12 @@ impl MapNeeds {
     /// Keys of batches that cast: all, or all but the ground.
     fn casters<'a>(&self, scene: &'a SceneNeeds) -> impl Iterator<Item = BatchKey> + 'a {
         let casts = self.ground_casts;
-        scene.surfaces().filter(move |key| casts || !key.is_ground).map(caster_key)
+        scene.surfaces().filter(move |key| !key.is_passed && (casts || !key.is_ground)).map(caster_key)
     }
 
     /// Casters on the ground.
     fn casters_on_ground<'a>(&self, scene: &'a SceneNeeds) -> impl Iterator<Item = BatchKey> + 'a {
-        scene.surfaces().filter(|key| !key.is_ground).map(caster_key)
+        scene.surfaces().filter(|key| !key.is_passed && !key.is_ground).map(caster_key)
     }
 
     /// What is read of the sun for a batch.
@@ -98,6 +98,7 @@ impl MapNeeds {
             _ if self.output == Output::LampVisibility => SunReads::Down,
             SunShading::Down => SunReads::Down,
             SunShading::Open => SunReads::Open,
+            SunShading::Shaded { .. } if key.is_open => SunReads::Open,
             SunShading::Shaded { .. } if !is_read => SunReads::Open,
             SunShading::Shaded { .. } if self.reads.has_flat_mask => {
                 if key.is_ground {
@@ -115,7 +116,7 @@ impl MapNeeds {
     pub fn surface_program_key(&self, scene: &SceneNeeds, key: &BatchKey) -> MapProgram {
         let sun = self.sun_of(key);
         let key = match self.output {
-            Output::Visibility => BatchKey { page: 0, texture: None, ..*key },
+            Output::Visibility => BatchKey { page: 0, texture: None, is_passed: false, is_open: false, ..*key },
             Output::Lit | Output::LampVisibility => scene.surface_key(key),
         };
         MapProgram::Surface(self.output, sun, BatchKey { is_ground: false, ..key })

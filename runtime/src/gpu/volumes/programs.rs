@@ -149,7 +149,7 @@ impl VolumeRenderer<'_> {
             target.blend = blend.state();
         }
         if let Some(depth) = &mut state.depth_stencil {
-            depth.stencil = where_none_was_counted();
+            depth.stencil = if key.is_open { Default::default() } else { where_none_was_counted() };
         }
         let [frame, _, texture] = self.scene.groups(key);
         let stages = surface_stages(&text, light.fragment(), &attributes);
@@ -215,7 +215,7 @@ pub fn face_key(extruded: &Extruded, part: Part, of: VolumeUse, is_z_pass: bool)
 
 /// The key of a batch's program under a point light, which reads no page.
 pub fn hard_key(key: &BatchKey) -> BatchKey {
-    BatchKey { page: 0, texture: None, ..*key }
+    BatchKey { page: 0, texture: None, is_passed: false, ..*key }
 }
 
 /// Counts faces: in front of the surface (z-pass), or behind it.
