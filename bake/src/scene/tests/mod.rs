@@ -5,6 +5,7 @@ mod look;
 mod pose;
 mod read;
 mod refuse;
+mod roles;
 mod survive;
 mod write;
 
