@@ -105,8 +105,7 @@ impl<'a> Page<'a> {
             let is_in_front = geometric_normal.dot(moment.sun_direction) > 0.0;
             return if is_in_front { self.page_visibility(page_uv, filter, moment) } else { 0.0 };
         }
-        let disc_share =
-            (0.5 + geometric_normal.dot(moment.sun_direction) * moment.inverse_angular_diameter).clamp(0.0, 1.0);
+        let disc_share = moment.open_visibility(geometric_normal);
         if disc_share <= 0.0 {
             return 0.0;
         }
@@ -124,8 +123,8 @@ impl<'a> Page<'a> {
         lamp: &LampMoment,
     ) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
-        let sphere_share = (0.5 + geometric_normal.dot(to_lamp_m) * lamp.inverse_diameter_per_m()).clamp(0.0, 1.0);
-        if sphere_share <= 0.0 || to_lamp_m.length_squared() > lamp.range_m * lamp.range_m {
+        let sphere_share = lamp.open_visibility(geometric_normal, to_lamp_m);
+        if sphere_share <= 0.0 {
             return 0.0;
         }
         let visibility = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);

@@ -1,5 +1,5 @@
-//! Base colour textures with mip levels, and their sampling on the CPU: the twin of a GPU's sampler with an sRGB
-//! texture and `textureSampleLevel`.
+//! Textures with mip levels, and their sampling on the CPU: the twin of a GPU's sampler with a texture, sRGB or linear,
+//! and `textureSampleLevel`.
 
 use glam::{Vec2, Vec4};
 use std::sync::LazyLock;
@@ -11,6 +11,17 @@ use sunbake::scene::{Image, Wrap};
 pub struct MipChain {
     /// From the image itself to a single texel.
     pub levels: Vec<Level>,
+    /// What its codes mean.
+    pub encoding: Encoding,
+}
+
+/// What the codes of an image's red, green and blue mean. Alpha is always linear.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Encoding {
+    /// Colours.
+    Srgb,
+    /// Numbers from 0 to 1: normals, metal, roughness.
+    Linear,
 }
 
 /// A mip level, with half the texels of the one before along each axis.
@@ -20,7 +31,7 @@ pub struct Level {
     pub width: u32,
     /// In texels.
     pub height: u32,
-    /// sRGB colour and linear alpha, row order.
+    /// Codes of colour and alpha, row order.
     pub rgba: Vec<[u8; 4]>,
 }
 
@@ -42,25 +53,34 @@ pub fn linear_from_srgb(code: u8) -> f32 {
     LINEAR_FROM_SRGB[code as usize]
 }
 
-fn linear(texel: [u8; 4]) -> Vec4 {
-    let [r, g, b, a] = texel;
-    Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), f32::from(a) / 255.0)
-}
+impl Encoding {
+    fn decoded(self, texel: [u8; 4]) -> Vec4 {
+        let [r, g, b, a] = texel;
+        let unit = |code: u8| f32::from(code) / 255.0;
+        match self {
+            Self::Srgb => Vec4::new(linear_from_srgb(r), linear_from_srgb(g), linear_from_srgb(b), unit(a)),
+            Self::Linear => Vec4::new(unit(r), unit(g), unit(b), unit(a)),
+        }
+    }
 
-fn encoded(color: Vec4) -> [u8; 4] {
-    let code = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
-    let [r, g, b] = [color.x, color.y, color.z].map(|x| code(srgb_from_linear(x)));
-    [r, g, b, code(color.w)]
+    fn encoded(self, color: Vec4) -> [u8; 4] {
+        let code = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let [r, g, b] = [color.x, color.y, color.z].map(|x| match self {
+            Self::Srgb => code(srgb_from_linear(x)),
+            Self::Linear => code(x),
+        });
+        [r, g, b, code(color.w)]
+    }
 }
 
 impl MipChain {
     /// Halves an image until one texel is left.
-    pub fn new(image: &Image) -> Self {
+    pub fn new(image: &Image, encoding: Encoding) -> Self {
         let mut levels = vec![Level { width: image.width, height: image.height, rgba: image.rgba.clone() }];
-        while let Some(next) = levels.last().and_then(Level::halved) {
+        while let Some(next) = levels.last().and_then(|level| level.halved(encoding)) {
             levels.push(next);
         }
-        Self { levels }
+        Self { levels, encoding }
     }
 
     /// Samples with trilinear filtering. `lod` 0 is the image itself.
@@ -68,15 +88,16 @@ impl MipChain {
         let lod = lod.clamp(0.0, (self.levels.len() - 1) as f32);
         let fine = lod.floor() as usize;
         let weight = lod - lod.floor();
-        let near = self.levels[fine].sample(uv, wrap);
-        if weight == 0.0 { near } else { near.lerp(self.levels[fine + 1].sample(uv, wrap), weight) }
+        let sample = |level: usize| self.levels[level].sample(uv, wrap, self.encoding);
+        let near = sample(fine);
+        if weight == 0.0 { near } else { near.lerp(sample(fine + 1), weight) }
     }
 }
 
 impl Level {
     /// Half as wide and high, rounded down. None for a single texel. Colours are weighted by alpha, so that transparent
     /// texels do not tint opaque ones.
-    fn halved(&self) -> Option<Self> {
+    fn halved(&self, encoding: Encoding) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;
         }
@@ -85,9 +106,9 @@ impl Level {
         for y in 0..height {
             for x in 0..width {
                 let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| {
-                    linear(self.texel((2 * x + i).min(self.width - 1), (2 * y + j).min(self.height - 1)))
+                    encoding.decoded(self.texel((2 * x + i).min(self.width - 1), (2 * y + j).min(self.height - 1)))
                 });
-                rgba.push(encoded(mean(four)));
+                rgba.push(encoding.encoded(mean(four)));
             }
         }
         Some(Self { width, height, rgba })
@@ -97,13 +118,14 @@ impl Level {
         self.rgba[y as usize * self.width as usize + x as usize]
     }
 
-    fn sample(&self, uv: Vec2, wrap: [Wrap; 2]) -> Vec4 {
+    fn sample(&self, uv: Vec2, wrap: [Wrap; 2], encoding: Encoding) -> Vec4 {
         let place = uv * Vec2::new(self.width as f32, self.height as f32) - 0.5;
         let base = place.floor();
         let weight = place - base;
         let (x, y) = (base.x as i64, base.y as i64);
         let at = |dx: i64, dy: i64| {
-            linear(self.texel(wrap_texel(x + dx, self.width, wrap[0]), wrap_texel(y + dy, self.height, wrap[1])))
+            let (x, y) = (wrap_texel(x + dx, self.width, wrap[0]), wrap_texel(y + dy, self.height, wrap[1]));
+            encoding.decoded(self.texel(x, y))
         };
         let top = at(0, 0).lerp(at(1, 0), weight.x);
         let bottom = at(0, 1).lerp(at(1, 1), weight.x);
@@ -128,21 +150,28 @@ mod tests {
 
     #[test]
     fn a_flat_image_is_flat_at_every_level() {
-        let mips = MipChain::new(&image(5, 3, vec![[200, 100, 50, 255]; 15]));
+        let mips = MipChain::new(&image(5, 3, vec![[200, 100, 50, 255]; 15]), Encoding::Srgb);
         assert_eq!(mips.levels.iter().map(|l| (l.width, l.height)).collect::<Vec<_>>(), [(5, 3), (2, 1), (1, 1)]);
         assert!(mips.levels.iter().all(|l| l.rgba.iter().all(|&t| t == [200, 100, 50, 255])));
     }
 
     #[test]
     fn codes_survive_decoding_and_encoding() {
-        for code in 0..=255 {
-            assert_eq!(encoded(linear([code, code, code, code])), [code; 4]);
+        for encoding in [Encoding::Srgb, Encoding::Linear] {
+            assert!((0..=255).all(|code| encoding.encoded(encoding.decoded([code; 4])) == [code; 4]));
         }
     }
 
     #[test]
+    fn numbers_are_averaged_as_they_are_and_colours_as_light() {
+        let halves = image(2, 1, vec![[0, 0, 0, 255], [255, 255, 255, 255]]);
+        let last = |encoding| MipChain::new(&halves, encoding).levels[1].rgba[0][0];
+        assert_eq!((last(Encoding::Linear), last(Encoding::Srgb)), (128, 188));
+    }
+
+    #[test]
     fn sampling_at_texel_centres_returns_texels_and_between_them_their_mean() {
-        let mips = MipChain::new(&image(2, 1, vec![[0, 0, 0, 255], [255, 255, 255, 255]]));
+        let mips = MipChain::new(&image(2, 1, vec![[0, 0, 0, 255], [255, 255, 255, 255]]), Encoding::Srgb);
         let at = |u: f32| mips.sample(Vec2::new(u, 0.5), 0.0, [Wrap::Repeat; 2]).x;
         assert!((at(0.25), at(0.75)) == (0.0, 1.0) && (at(0.5) - 0.5).abs() < 1e-6 && (at(1.0) - 0.5).abs() < 1e-6);
     }

@@ -20,6 +20,35 @@ pub struct SurfaceVariant {
     pub has_vertex_color: bool,
     /// It has an alpha mask.
     pub has_alpha_mask: bool,
+    /// What only lit pictures show.
+    pub look: LookVariant,
+}
+
+/// What a surface needs of a program that lights it, beyond its base colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct LookVariant {
+    /// It is metallic or has highlights; else it only scatters light.
+    pub is_specular: bool,
+    /// Its material has a metallic-roughness texture; only of specular surfaces.
+    pub has_metallic_roughness_map: bool,
+    /// Its material has a normal map.
+    pub has_normal_map: bool,
+    /// Its material has an emissive texture.
+    pub has_emissive_map: bool,
+    /// It is blended with what lies behind.
+    pub is_blended: bool,
+}
+
+impl SurfaceVariant {
+    /// The same surface without its look, for programs that find depths and visibility.
+    pub fn without_look(self) -> Self {
+        Self { look: LookVariant::default(), ..self }
+    }
+
+    fn has_textures(self) -> bool {
+        let look = self.look;
+        self.is_textured || look.has_metallic_roughness_map || look.has_normal_map || look.has_emissive_map
+    }
 }
 
 /// How stored times become a pixel's visibility.
@@ -103,18 +132,58 @@ pub fn depth_shader(surface: SurfaceVariant) -> String {
 /// The lit pass: entry points `surface_vertex` and `lit_fragment`.
 pub fn lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = shading(surface, page, filter);
-    end_of_lit(&mut text, page, filter);
+    end_of_lit(&mut text, surface.look, page, filter);
     text
 }
 
 /// The rest of the lit pass, after the sun's visibility.
-pub(crate) fn end_of_lit(text: &mut String, page: &PageVariant, filter: Filter) {
-    push_ambient(text, page);
-    text.push_str(wgsl!("surface/shade"));
+pub(crate) fn end_of_lit(text: &mut String, look: LookVariant, page: &PageVariant, filter: Filter) {
     push_lamp(text, page, filter);
-    text.push_str(if page.lamp_layer_count > 0 { wgsl!("lamp/shade") } else { wgsl!("lamp/shade_none") });
-    text.push_str(wgsl!("surface/surface"));
+    push_shade(text, look, page, page.lamp_layer_count > 0);
+}
+
+/// Shading, once it is known how much is seen of each light.
+fn push_shade(text: &mut String, look: LookVariant, page: &PageVariant, has_lamp: bool) {
+    push_ambient(text, page);
+    push_surface(text, look);
+    text.push_str(&match look.is_specular {
+        // Reflections of the sky need its colours.
+        true => [wgsl!("frame/air_color"), wgsl!("surface/ambient_specular"), wgsl!("surface/shade_specular")].concat(),
+        false => wgsl!("surface/shade").to_owned(),
+    });
+    text.push_str(if has_lamp { wgsl!("lamp/shade") } else { wgsl!("lamp/shade_none") });
     text.push_str(wgsl!("surface/lit_fragment"));
+}
+
+/// The lit pass of a surface that nothing shades: entry points `surface_vertex` and `lit_fragment`. Of the page only
+/// ambient light is read.
+pub fn open_lit_shader(surface: SurfaceVariant, page: &PageVariant, has_lamp: bool) -> String {
+    let page = PageVariant { lanes: Vec::new(), lamp_layer_count: 0, ..page.clone() };
+    let mut text = on_surface(surface, &page);
+    text.push_str(wgsl!("baked/sun_open"));
+    text.push_str(&match has_lamp {
+        true => [wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("lamp/open")].concat(),
+        false => wgsl!("lamp/none").to_owned(),
+    });
+    push_shade(&mut text, surface.look, &page, has_lamp);
+    text
+}
+
+/// A surface at a pixel, and how it reflects a light.
+pub(crate) fn push_surface(text: &mut String, look: LookVariant) {
+    let files = [
+        match (look.is_specular, look.has_metallic_roughness_map) {
+            (false, _) => wgsl!("surface/metallic_roughness_none"),
+            (true, false) => wgsl!("surface/metallic_roughness"),
+            (true, true) => wgsl!("surface/metallic_roughness_map"),
+        },
+        if look.has_normal_map { wgsl!("surface/normal_map") } else { wgsl!("surface/normal") },
+        if look.has_emissive_map { wgsl!("surface/emission_map") } else { wgsl!("surface/emission") },
+        if look.is_blended { wgsl!("surface/opacity") } else { wgsl!("surface/opacity_one") },
+        wgsl!("surface/surface"),
+        if look.is_specular { wgsl!("surface/reflection_specular") } else { wgsl!("surface/reflection") },
+    ];
+    text.push_str(&files.concat());
 }
 
 /// The visibility pass: entry points `surface_vertex` and `visibility_fragment`.
@@ -137,6 +206,7 @@ pub fn sky_shader() -> String {
     [
         &constants(),
         wgsl!("frame/frame"),
+        wgsl!("frame/air_color"),
         wgsl!("frame/sky_color"),
         wgsl!("frame/screen_vertex"),
         wgsl!("frame/sky_fragment"),
@@ -228,6 +298,9 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
 pub(crate) fn push_alpha_mask(text: &mut String, surface: SurfaceVariant, vertex: &str) {
     text.push_str(&constants());
     text.push_str(vertex);
+    if surface.has_textures() {
+        text.push_str(wgsl!("surface/level"));
+    }
     text.push_str(if surface.is_textured {
         wgsl!("surface/texture_color")
     } else {

@@ -7,8 +7,8 @@
 //! constants.
 //!
 //! Bind groups: 0 holds [`FrameUniform`], materials, [`LampUniform`] and [`SkyUniform`]; 1 the maps of an atlas page,
-//! or the points of shadow volumes, or the matrix of a shadow map that is drawn; 2 the base colour texture; 3 shadow
-//! maps that are read.
+//! or the points of shadow volumes, or the matrix of a shadow map that is drawn; 2 a surface's textures; 3 shadow maps
+//! that are read.
 //!
 //! ```
 //! use sunbake_shaders::{Filter, LaneVariant, PageVariant, SurfaceVariant, attributes, lit_shader};
@@ -37,8 +37,8 @@ mod vertex;
 mod volumes;
 
 pub use compose::{
-    AmbientModel, Filter, LaneVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader, lit_shader,
-    sky_shader, visibility_shader,
+    AmbientModel, Filter, LaneVariant, LookVariant, PageVariant, SurfaceVariant, depth_shader, lamp_visibility_shader,
+    lit_shader, open_lit_shader, sky_shader, visibility_shader,
 };
 pub use shadow_maps::{
     ShadowBias, ShadowFilter, ShadowMapChoice, ShadowSource, ShadowTap, blur_shader, mapped_lit_shader,
@@ -48,7 +48,9 @@ pub use uniforms::{
     FrameUniform, LampUniform, MOST_SHADOW_MAPS, MaterialUniform, ShadowMapUniform, ShadowMapsUniform, SkyUniform,
     WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
 };
-pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};
+pub use vertex::{
+    Attribute, ColorVertex, Format, NormalVertex, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes,
+};
 pub use volumes::{
     HardLight, VolumeCorners, VolumeLight, VolumeUse, background_shader, hard_light_shader, screen_shader,
     volume_shader,

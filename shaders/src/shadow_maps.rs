@@ -124,7 +124,7 @@ pub fn blur_shader() -> String {
 pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter, sun: &ShadowSource) -> String {
     let mut text = on_surface(surface, page);
     push_sun(&mut text, sun);
-    end_of_lit(&mut text, page, filter);
+    end_of_lit(&mut text, surface.look, page, filter);
     text
 }
 

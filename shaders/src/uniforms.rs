@@ -143,6 +143,14 @@ pub struct MaterialUniform {
     pub wrap_u: u32,
     /// How the texture repeats along v.
     pub wrap_v: u32,
+    /// Metal, 0 to 1; multiplied with the texture's blue.
+    pub metallic: f32,
+    /// Roughness, 0 to 1; multiplied with the texture's green.
+    pub roughness: f32,
+    /// Scale of the normal map's x and y.
+    pub normal_scale: f32,
+    /// Share of the light behind that is let through, 0 to 1; only of blended surfaces.
+    pub transmission: f32,
     #[doc(hidden)]
     pub pad: f32,
 }

@@ -18,6 +18,12 @@ pub enum Stream {
     Texture,
     /// [`ColorVertex`]; only of surfaces with vertex colours.
     Color,
+    /// [`TextureVertex`]; only of surfaces with a metallic-roughness texture.
+    MetallicRoughness,
+    /// [`NormalVertex`]; only of surfaces with a normal map.
+    Normal,
+    /// [`TextureVertex`]; only of surfaces with an emissive texture.
+    Emissive,
 }
 
 impl Stream {
@@ -26,7 +32,8 @@ impl Stream {
         let bytes = match self {
             Self::Position => size_of::<PositionVertex>(),
             Self::Surface => size_of::<SurfaceVertex>(),
-            Self::Texture => size_of::<TextureVertex>(),
+            Self::Texture | Self::MetallicRoughness | Self::Emissive => size_of::<TextureVertex>(),
+            Self::Normal => size_of::<NormalVertex>(),
             Self::Color => size_of::<ColorVertex>(),
         };
         bytes as u64
@@ -82,6 +89,16 @@ pub struct TextureVertex {
     pub texels_per_metre: f32,
 }
 
+/// Attributes of surfaces with a normal map.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct NormalVertex {
+    /// Image coordinates of the normal map, and its texels per metre.
+    pub texture: TextureVertex,
+    /// Unit tangent in bake space, and 1 or -1: the bitangent is the cross product of normal and tangent, times that.
+    pub tangent: [i16; 4],
+}
+
 /// An entry of [`Stream::Color`].
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -129,6 +146,20 @@ pub fn attributes(surface: SurfaceVariant) -> Vec<Attribute> {
     }
     if surface.has_vertex_color {
         all.push(make("color", Stream::Color, Format::Unorm16x4, offset_of!(ColorVertex, color), false));
+    }
+    let mut texture = |stream, uv, texels_per_metre| {
+        all.push(make(uv, stream, Format::Float2, offset_of!(TextureVertex, image_uv), false));
+        all.push(make(texels_per_metre, stream, Format::Float, offset_of!(TextureVertex, texels_per_metre), true));
+    };
+    if surface.look.has_metallic_roughness_map {
+        texture(Stream::MetallicRoughness, "metal_uv", "metal_texels_per_metre");
+    }
+    if surface.look.has_emissive_map {
+        texture(Stream::Emissive, "emissive_uv", "emissive_texels_per_metre");
+    }
+    if surface.look.has_normal_map {
+        texture(Stream::Normal, "normal_uv", "normal_texels_per_metre");
+        all.push(make("tangent", Stream::Normal, Format::Snorm16x4, offset_of!(NormalVertex, tangent), false));
     }
     all
 }

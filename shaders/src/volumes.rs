@@ -1,6 +1,6 @@
 //! Shaders of shadow volumes and of point lights.
 
-use crate::compose::{on_surface, wgsl};
+use crate::compose::{on_surface, push_surface, wgsl};
 use crate::{PageVariant, SurfaceVariant};
 
 /// A light that extrudes volumes.
@@ -107,16 +107,15 @@ pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
     if matches!(light, HardLight::LampMask | HardLight::Lamp) {
         text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("volumes/lamp_facing")].concat());
     }
-    match light {
-        HardLight::SunMask => text.push_str(wgsl!("volumes/sun_mask_fragment")),
-        HardLight::Sun => text.push_str(&[wgsl!("surface/surface"), wgsl!("volumes/sun_light_fragment")].concat()),
-        HardLight::LampMask => text.push_str(wgsl!("volumes/lamp_mask_fragment")),
-        HardLight::Lamp => {
-            text.push_str(
-                &[wgsl!("lamp/shade"), wgsl!("surface/surface"), wgsl!("volumes/lamp_light_fragment")].concat(),
-            );
-        }
+    if matches!(light, HardLight::Sun | HardLight::Lamp) {
+        push_surface(&mut text, surface.look);
     }
+    text.push_str(&match light {
+        HardLight::SunMask => wgsl!("volumes/sun_mask_fragment").to_owned(),
+        HardLight::Sun => wgsl!("volumes/sun_light_fragment").to_owned(),
+        HardLight::LampMask => wgsl!("volumes/lamp_mask_fragment").to_owned(),
+        HardLight::Lamp => [wgsl!("lamp/shade"), wgsl!("volumes/lamp_light_fragment")].concat(),
+    });
     text
 }
 

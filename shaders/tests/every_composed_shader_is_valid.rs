@@ -19,8 +19,27 @@ fn surfaces() -> Vec<SurfaceVariant> {
             is_textured: bits & 1 != 0,
             has_vertex_color: bits & 2 != 0,
             has_alpha_mask: bits & 4 != 0,
+            look: LookVariant::default(),
         })
         .collect()
+}
+
+/// Surfaces with every combination of what only lit pictures show.
+fn looks() -> Vec<SurfaceVariant> {
+    let of_bits = |bits: u32| LookVariant {
+        is_specular: bits & 3 != 0,
+        has_metallic_roughness_map: bits & 2 != 0,
+        has_normal_map: bits & 4 != 0,
+        has_emissive_map: bits & 8 != 0,
+        is_blended: bits & 16 != 0,
+    };
+    let surface = |bits: u32| SurfaceVariant {
+        is_textured: bits & 5 != 0,
+        has_vertex_color: bits & 6 == 6,
+        has_alpha_mask: bits & 17 == 1,
+        look: of_bits(bits),
+    };
+    (0..32).filter(|bits| bits & 3 != 3).map(surface).collect()
 }
 
 fn pages() -> Vec<PageVariant> {
@@ -108,6 +127,44 @@ fn every_composed_shader_is_valid() {
 }
 
 #[test]
+fn every_look_is_valid() {
+    let lane = LaneVariant { layer_count: 2, weight: 1.0, chord: 1.0 };
+    let baked = PageVariant { max_code: 255, lanes: vec![lane], lamp_layer_count: 1, ..PageVariant::default() };
+    let sky = PageVariant { ambient: AmbientModel::Sky, has_backs: true, ..baked.clone() };
+    for surface in looks() {
+        for page in [&PageVariant::default(), &baked, &sky] {
+            validated(&lit_shader(surface, page, Filter::Bilinear));
+        }
+        validated(&mapped_lit_shader(surface, &baked, Filter::Bilinear, &ShadowSource::Open));
+        for light in [HardLight::Sun, HardLight::Lamp] {
+            validated(&hard_light_shader(surface, light));
+        }
+        for has_lamp in [false, true] {
+            validated(&open_lit_shader(surface, &sky, has_lamp));
+            validated(&open_lit_shader(surface, &PageVariant::default(), has_lamp));
+        }
+        assert!(attributes(surface).len() <= 16, "a GPU has 16 attributes: {surface:?}");
+    }
+}
+
+#[test]
+fn looks_are_in_no_program_of_a_plain_surface() {
+    let named =
+        ["reflect(", "metal_texture", "normal_texture", "emissive_texture", "tangent", "air_color", "1.0 - mat"];
+    let of =
+        |look| lit_shader(SurfaceVariant { look, ..Default::default() }, &PageVariant::default(), Filter::Bilinear);
+    let all = LookVariant {
+        is_specular: true,
+        has_metallic_roughness_map: true,
+        has_normal_map: true,
+        has_emissive_map: true,
+        is_blended: true,
+    };
+    let (plain, full) = (of(LookVariant::default()), of(all));
+    assert!(named.iter().all(|name| !plain.contains(name) && full.contains(name)));
+}
+
+#[test]
 fn the_snippet_for_engines_is_valid() {
     validated(ENGINE_WGSL);
 }
@@ -190,6 +247,9 @@ fn uniforms_have_one_layout_in_rust_and_wgsl() {
     assert_eq!(members(&mapped, "ShadowMap"), (rust, size_of::<ShadowMapUniform>() as u32));
     let rust = offsets!(ShadowMapsUniform: maps, count);
     assert_eq!(members(&mapped, "ShadowMaps"), (rust, size_of::<ShadowMapsUniform>() as u32));
-    let rust = offsets!(MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v);
+    let rust = offsets!(
+        MaterialUniform: base_color, emissive, is_unlit, cutoff, wrap_u, wrap_v, metallic, roughness, normal_scale,
+        transmission
+    );
     assert_eq!(members(&module, "Material"), (rust, size_of::<MaterialUniform>() as u32));
 }

@@ -40,6 +40,11 @@ impl SceneFile {
         Self { doc, buffers, pictures }
     }
 
+    /// What it holds, for reading more of it.
+    pub(super) fn parts(&self) -> (&Document, &Buffers, &[Picture]) {
+        (&self.doc, &self.buffers, &self.pictures)
+    }
+
     /// A file made by code, of one buffer.
     pub(crate) fn made(json: Value, binary: Vec<u8>) -> Self {
         Self::new(Document { root: json }, Buffers::of_one(binary), Vec::new())

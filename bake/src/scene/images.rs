@@ -1,7 +1,8 @@
-//! Base colour images: format from their first bytes, size checked before decoding, decoded on all cores.
+//! Images: format from their first bytes, size checked before decoding, decoded on all cores.
 //!
-//! Only images that a drawn material uses for its base colour are decoded. The others are read, if possible, because
-//! `scene.glb` keeps them, and the scene's hash covers every file that it names.
+//! Loading decodes only images that a drawn material uses for its base colour; [`super::looks`] decodes others when a
+//! picture needs them. All are read, if possible, because `scene.glb` keeps them, and the scene's hash covers every
+//! file that it names.
 
 use super::{
     Image, LoadError,
@@ -26,7 +27,6 @@ pub(super) enum Decoded {
 
 /// A needed image, not decoded yet.
 struct Encoded<'a> {
-    file_index: usize,
     name: String,
     bytes: &'a [u8],
 }
@@ -49,7 +49,7 @@ pub(super) fn fetch(doc: &Document, fetcher: &mut Fetcher) -> Vec<Picture> {
     (0..doc.count::<document::JsonImage>()).map(fetch_one).collect()
 }
 
-/// Decodes the needed images.
+/// Decodes the needed images. One outside of the scene's folder or beyond the budget stops it.
 pub(super) fn read(
     doc: &Document,
     buffers: &Buffers,
@@ -57,23 +57,54 @@ pub(super) fn read(
     budget: &MemoryBudget,
     needed: &BTreeSet<usize>,
 ) -> Result<(Vec<Image>, BTreeMap<usize, Decoded>), LoadError> {
-    let mut decoded = BTreeMap::new();
-    let mut encoded = Vec::new();
-    for &file_index in needed {
-        let name = name(doc, file_index);
-        match bytes(doc, file_index, buffers, pictures) {
-            Err(error @ (LoadError::Outside { .. } | LoadError::TooLarge { .. })) => return Err(error),
-            Err(error) => {
-                decoded.insert(file_index, Decoded::Failed { name, cause: error.to_string(), has_no_alpha: false });
-            }
-            Ok(bytes) => {
-                reserve_memory(bytes, &name, budget)?;
-                encoded.push(Encoded { file_index, name, bytes });
-            }
+    let found = needed.iter().map(|&index| (index, encoded(doc, buffers, pictures, budget, index)));
+    let is_fatal = |error: &LoadError| matches!(error, LoadError::Outside { .. } | LoadError::TooLarge { .. });
+    let all = found.map(|(index, read)| match read {
+        Err(error) if is_fatal(&error) => Err(error),
+        read => Ok((index, read)),
+    });
+    Ok(decode_all(doc, all.collect::<Result<_, _>>()?))
+}
+
+/// Decodes images that only looks need: what cannot be had is a failure of that image alone.
+pub(super) fn read_what_can_be(
+    doc: &Document,
+    buffers: &Buffers,
+    pictures: &[Picture],
+    budget: &MemoryBudget,
+    needed: &BTreeSet<usize>,
+) -> (Vec<Image>, BTreeMap<usize, Decoded>) {
+    let found = needed.iter().map(|&index| (index, encoded(doc, buffers, pictures, budget, index)));
+    decode_all(doc, found.collect())
+}
+
+/// An image's bytes, with the memory for decoding it taken from the budget.
+fn encoded<'a>(
+    doc: &Document,
+    buffers: &'a Buffers,
+    pictures: &'a [Picture],
+    budget: &MemoryBudget,
+    file_index: usize,
+) -> Result<Encoded<'a>, LoadError> {
+    let name = name(doc, file_index);
+    let bytes = bytes(doc, file_index, buffers, pictures)?;
+    reserve_memory(bytes, &name, budget)?;
+    Ok(Encoded { name, bytes })
+}
+
+fn decode_all(
+    doc: &Document,
+    found: Vec<(usize, Result<Encoded, LoadError>)>,
+) -> (Vec<Image>, BTreeMap<usize, Decoded>) {
+    let decode_one = |(file_index, read): (usize, Result<Encoded, LoadError>)| match read {
+        Ok(encoded) => (file_index, decode(encoded)),
+        Err(error) => {
+            let name = name(doc, file_index);
+            (file_index, Err(Decoded::Failed { name, cause: error.to_string(), has_no_alpha: false }))
         }
-    }
-    let results: Vec<_> = encoded.into_par_iter().map(|e| (e.file_index, decode(e))).collect();
-    let mut images = Vec::new();
+    };
+    let results: Vec<_> = found.into_par_iter().map(decode_one).collect();
+    let (mut images, mut decoded) = (Vec::new(), BTreeMap::new());
     for (file_index, result) in results {
         let entry = match result {
             Ok((image, [lowest_alpha, highest_alpha])) => {
@@ -84,7 +115,7 @@ pub(super) fn read(
         };
         decoded.insert(file_index, entry);
     }
-    Ok((images, decoded))
+    (images, decoded)
 }
 
 /// An image's place and name, for messages: `images[3] "bark.png"`.

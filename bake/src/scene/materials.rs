@@ -83,7 +83,8 @@ fn draft(doc: &Document, index: usize, log: &mut WarningLog) -> Result<DraftMate
     Ok(DraftMaterial { place, material, cutoff, is_blended })
 }
 
-fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String> {
+/// Where a texture is and how it is read; [`TextureRef::image`] is an index into the file's images.
+pub(super) fn texture_ref(doc: &Document, info: &TextureInfo) -> Result<TextureRef, String> {
     let texture: document::JsonTexture = doc.get(info.index).map_err(|error| error.to_string())?;
     let image = texture.source.ok_or_else(|| match texture.extensions.iter().flatten().next() {
         Some((extension, _)) => format!("it is given by {extension} alone, which sunbake does not read"),

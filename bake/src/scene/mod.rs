@@ -37,6 +37,7 @@ mod images;
 mod instancing;
 mod limits;
 mod load;
+pub mod looks;
 mod materials;
 mod names;
 mod nodes;
@@ -225,8 +226,8 @@ pub struct Material {
 }
 
 /// What alpha means for light. `BLEND` in the file is [`Alpha::Mask`] at one half: what is at least half opaque casts,
-/// what is less does not (see docs/decisions.md, "Blended materials"). A surface that is less everywhere is opaque to
-/// the eye and [clear](Material::is_clear) to light.
+/// what is less does not (see docs/decisions.md, "Blended materials"). A surface that is less everywhere is opaque here
+/// and [clear](Material::is_clear) to light. Lit pictures blend both: [`looks::MeshLook::is_blended`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alpha {
     /// Alpha is ignored.
@@ -241,7 +242,7 @@ pub enum Alpha {
 }
 
 /// A texture as a material uses it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextureRef {
     /// Index in [`Scene::images`].
     pub image: usize,

@@ -205,15 +205,29 @@ pub struct LookArgs {
     /// How stored times are filtered.
     #[arg(long, value_enum, default_value_t = FilterChoice::Bilinear)]
     pub filter: FilterChoice,
-    /// Draw N times as wide and high, and average: 1 to 8. Time grows with the square.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=8))]
-    pub supersample: u32,
+    /// Samples along each of a pixel's edges, 1 to 8: pictures are drawn N times as wide and high, and averaged. Time
+    /// grows with the square; 1 leaves edges jagged. [default: 2; of visibility, and of pictures over 4096 pixels, 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
+    pub supersample: Option<u32>,
     /// What draws: the GPU if there is one, the GPU, or the CPU.
     #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
     pub renderer: RendererChoice,
     /// Threads; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
+}
+
+/// Longest edge of a picture that has several samples a pixel without being asked to: twice that many are as many as
+/// every GPU draws.
+const MOST_SMOOTHED_PIXELS: u32 = 4096;
+
+impl LookArgs {
+    /// Samples along each edge of a picture's pixels. Visibility is measured at one point of each pixel.
+    pub fn samples(&self, output: OutputChoice) -> u32 {
+        let is_large = self.size.iter().any(|&edge| edge > MOST_SMOOTHED_PIXELS);
+        let usual = if is_large || output == OutputChoice::Visibility { 1 } else { 2 };
+        self.supersample.unwrap_or(usual)
+    }
 }
 
 /// What a picture shows.
@@ -319,5 +333,21 @@ mod tests {
     #[test]
     fn the_options_are_consistent() {
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn lit_pictures_have_smooth_edges_unless_told_otherwise() {
+        let samples = |options: &[&str], output| {
+            let args = ["sunplay", "frame", "set", "out.png", "--at", "0.5"].iter().chain(options);
+            match Args::try_parse_from(args).unwrap().command {
+                Command::Frame(args) => args.look.samples(output),
+                _ => unreachable!(),
+            }
+        };
+        assert_eq!(samples(&[], OutputChoice::Color), 2);
+        assert_eq!(samples(&[], OutputChoice::Visibility), 1);
+        assert_eq!(samples(&["--size", "5000x100"], OutputChoice::Color), 1);
+        assert_eq!(samples(&["--supersample", "1"], OutputChoice::Color), 1);
+        assert_eq!(samples(&["--supersample", "4"], OutputChoice::Visibility), 4);
     }
 }

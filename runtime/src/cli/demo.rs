@@ -1,6 +1,6 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
-use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, TechniqueChoice};
+use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, OutputChoice, TechniqueChoice};
 use super::draw::{open_gpu, technique, view};
 use super::files::{displayed, make_folder, write_rgb};
 use serde::Serialize;
@@ -59,7 +59,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
     let baked = bake(args, &scene, &set, &progress)?;
     let stage = Stage::read(&set)?;
     let look = look(args);
-    let shot = Shot::new(&stage, view(&stage, &look)?);
+    let shot = Shot::new(&stage, view(&stage, &look, OutputChoice::Color)?);
     let gpu = open_gpu(&look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &look)?;
     progress.begin("drawing the day, baked and traced", u64::from(args.count));
@@ -118,7 +118,7 @@ fn look(args: &DemoArgs) -> LookArgs {
         cascades: None,
         bias: None,
         filter: FilterChoice::Bilinear,
-        supersample: SUPERSAMPLE,
+        supersample: Some(SUPERSAMPLE),
         light: LightChoice::Both,
         ambient: AmbientChoice::Best,
         renderer: args.renderer,

@@ -3,9 +3,9 @@
 use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use clap::ValueEnum;
 use std::path::Path;
-use sunbake::BakeError;
 use sunbake::console::{Command, Failure, ObjectArgs, SunArgs, tell, warn_all};
 use sunbake::scene::LoadLimits;
+use sunbake::{BakeError, Warning};
 use sunbake_runtime::gpu::{Gpu, GpuError, Output, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::stage::MAX_SCENE_BYTES;
@@ -117,8 +117,8 @@ pub fn technique<'a>(
 }
 
 /// The view that was asked for, with all its samples.
-pub fn view(stage: &Stage, look: &LookArgs) -> Result<View, Failure> {
-    let size = look.size.map(|edge| edge * look.supersample);
+pub fn view(stage: &Stage, look: &LookArgs, output: OutputChoice) -> Result<View, Failure> {
+    let size = look.size.map(|edge| edge * look.samples(output));
     let samples = u64::from(size[0]) * u64::from(size[1]);
     if samples > MOST_SAMPLES {
         let text = format!("a picture of {samples} samples is too large: give a smaller --size or --supersample");
@@ -167,7 +167,7 @@ pub fn stage(
                 from.display()
             )));
         }
-        return plain_stage(from, sun, objects);
+        return plain_stage(from, sun, objects, output);
     }
     if sun.is_given() || objects.is_given() {
         return Err(Failure::usage(
@@ -175,7 +175,9 @@ pub fn stage(
              --leave-out, --no-cast and --no-receive out",
         ));
     }
-    let stage = Stage::read(from)?;
+    // Nothing that only looks need is read for a picture of visibility.
+    let read = if output == OutputChoice::Visibility { Stage::read_without_looks } else { Stage::read };
+    let stage = warned(read(from)?);
     let stage = match look.technique {
         TechniqueChoice::Baked => stage,
         // A lamp's shadows are those of the bake.
@@ -224,14 +226,22 @@ fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
 }
 
 /// A scene that is not baked, under a sun.
-fn plain_stage(file: &Path, sun: &SunArgs, objects: &ObjectArgs) -> Result<Stage, Failure> {
+fn plain_stage(file: &Path, sun: &SunArgs, objects: &ObjectArgs, output: OutputChoice) -> Result<Stage, Failure> {
     let mut scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
     objects.wishes().apply_to(&mut scene).map_err(BakeError::Objects)?;
     let request = sun.request(None)?;
     let mut warnings = Vec::new();
     let path = sunbake::sun_path(&request, &scene, &mut warnings)?;
     warn_all(&warnings, Command::Sunplay);
-    Ok(Stage::plain(scene, path))
+    scene.file = scene.file.filter(|_| output != OutputChoice::Visibility);
+    Ok(warned(Stage::plain(scene, path)))
+}
+
+/// A stage, once it has been told what could not be read of its looks.
+fn warned(stage: Stage) -> Stage {
+    let warnings: Vec<Warning> = stage.look_warnings().iter().cloned().map(Warning::Scene).collect();
+    warn_all(&warnings, Command::Sunplay);
+    stage
 }
 
 /// The moment `t` with the lights that are to be on.

@@ -25,6 +25,14 @@ pub fn kind(path: &Path) -> Result<Kind, Failure> {
     }
 }
 
+/// What seconds of drawing were spent on: so many samples along each edge of a pixel.
+pub fn in_words(samples: u32) -> String {
+    match samples {
+        1 => "1 sample a pixel".into(),
+        n => format!("{} samples a pixel", n * n),
+    }
+}
+
 /// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone
 /// curve, so that one bright sample does not outshine a pixel.
 pub fn displayed(light: &Raster<Vec3>, supersample: u32) -> Raster<[u8; 3]> {

@@ -2,7 +2,7 @@
 
 use super::args::FramesArgs;
 use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, stage, technique, view};
-use super::files::{displayed, displayed_visibility, make_folder, write_animation, write_rgb};
+use super::files::{displayed, displayed_visibility, in_words, make_folder, write_animation, write_rgb};
 use serde_json::json;
 use std::time::Instant;
 use sunbake::console::{Failure, ProgressLine, print, print_json, set_threads};
@@ -21,7 +21,8 @@ const ANIMATION_MS: [u32; 2] = [6000, 400];
 pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     set_threads(args.look.threads)?;
     let stage = stage(&args.set, &args.sun, &args.objects, &args.look, args.output)?;
-    let shot = Shot::new(&stage, view(&stage, &args.look)?);
+    let shot = Shot::new(&stage, view(&stage, &args.look, args.output)?);
+    let samples = args.look.samples(args.output);
     let gpu = open_gpu(&args.look, args.printing.quiet)?;
     let mut technique = technique(gpu.as_ref(), &stage, &args.look)?;
     make_folder(&args.output_folder)?;
@@ -35,8 +36,8 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
         let t = (f64::from(i) + 0.5) / f64::from(args.count);
         let moment = moment(&stage, &args.look, t)?;
         let picture = match draw(technique.as_mut(), &shot, &moment, args.output)? {
-            Picture::Color(light) => displayed(&light, args.look.supersample),
-            Picture::Visibility(seen) => displayed_visibility(&seen, args.look.supersample),
+            Picture::Color(light) => displayed(&light, samples),
+            Picture::Visibility(seen) => displayed_visibility(&seen, samples),
         };
         let name = format!("frame_{i:04}.png");
         write_rgb(&args.output_folder.join(&name), &picture)?;
@@ -60,7 +61,8 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     if args.printing.json {
         let report = json!({
             "folder": args.output_folder, "frames": drawn, "contact": "contact.png", "animation": "day.png",
-            "size": args.look.size, "seconds": seconds, "technique": technique.name(), "renderer": renderer,
+            "size": args.look.size, "samples_per_pixel": samples * samples, "seconds": seconds,
+            "technique": technique.name(), "renderer": renderer,
             "bytes": technique.bytes(), "gpu": technique.census(), "effects": effects.entries(),
             "plan": technique.notes(), "details": technique.details(),
         });
@@ -68,9 +70,10 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     } else if !args.printing.quiet {
         let folder = args.output_folder.display();
         print(&format!(
-            "{} pictures in {seconds:.1} s on {renderer}\n  {folder}/contact.png   all of them small\n  \
+            "{} pictures in {seconds:.1} s on {renderer}, {}\n  {folder}/contact.png   all of them small\n  \
              {folder}/day.png       an animated PNG\n",
-            args.count
+            args.count,
+            in_words(samples)
         ))?;
     }
     Ok(())

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use sunbake::disk::read::read_manifest;
 use sunbake::maps::Bits;
-use sunbake::scene::{LoadLimits, ObjectWishes};
+use sunbake::scene::{LoadLimits, ObjectWishes, Scene};
 use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::{BakeError, Prepared};
 use tempfile::TempDir;
@@ -86,7 +86,7 @@ impl ComparisonInputs {
         {
             return Err(CompareError::ReferenceNotInSet(settings.against.to_string()));
         }
-        let stage = Stage::read(folder)?.without_lamp().without_times();
+        let stage = Stage::read_without_looks(folder)?.without_lamp().without_times();
         let source_sha256 = manifest.source.sha256;
         Ok(Self { source: folder.into(), sets: vec![set], stage, techniques, left_out, source_sha256, _baked: None })
     }
@@ -111,14 +111,15 @@ impl ComparisonInputs {
         }
         if wanted.is_empty() {
             let source_sha256 = scene.source.sha256.clone();
-            let stage = Stage::plain(scene, path);
+            // Scores and pictures tell of shadows alone.
+            let stage = Stage::plain(Scene { file: None, ..scene }, path);
             return Ok(Self { source, sets: Vec::new(), stage, techniques, left_out, source_sha256, _baked: None });
         }
         drop(scene);
         let work_folder = tempfile::tempdir().map_err(CompareError::WorkFolder)?;
         let sets = bake.sets(&wanted, work_folder.path(), progress)?;
         let manifest = read_manifest(&sets[0].folder).map_err(StageError::Set)?;
-        let stage = Stage::read(&sets[0].folder)?.without_times();
+        let stage = Stage::read_without_looks(&sets[0].folder)?.without_times();
         let source_sha256 = manifest.source.sha256;
         Ok(Self { source, sets, stage, techniques, left_out, source_sha256, _baked: Some(work_folder) })
     }

@@ -8,6 +8,7 @@
 //! scene's half diagonal it lights a surface that faces it like the noon sun, and it falls off with the square of
 //! distance.
 
+use crate::shade::Reflector;
 use glam::{DVec3, Vec3};
 use sunbake::lamp::LampPath;
 use sunbake_shaders::LampUniform;
@@ -73,13 +74,20 @@ impl LampMoment {
         }
     }
 
-    /// Its light that a diffuse surface reflects, at a visibility from 0 to 1. Twin of `lamp/shade.wgsl`.
-    pub fn on(&self, base_color: Vec3, normal: Vec3, to_lamp_m: Vec3, visibility: f32) -> Vec3 {
+    /// Its light that a surface reflects, at a visibility from 0 to 1. Twin of `lamp/shade.wgsl`.
+    pub fn on(&self, surface: &Reflector, to_lamp_m: Vec3, visibility: f32) -> Vec3 {
         let distance2 = to_lamp_m.length_squared().max(1e-12);
         if distance2 > self.range_m * self.range_m {
             return Vec3::ZERO;
         }
-        let lambert = (normal.dot(to_lamp_m) / distance2.sqrt()).max(0.0);
-        base_color * self.light * (visibility * lambert / (distance2 + self.radius_m * self.radius_m))
+        let share = surface.reflected(to_lamp_m / distance2.sqrt());
+        share * self.light * (visibility / (distance2 + self.radius_m * self.radius_m))
+    }
+
+    /// Its visibility where nothing hides it: the share of its sphere in front of the surface's plane; 0 beyond its
+    /// range. Twin of `lamp/open.wgsl`.
+    pub fn open_visibility(&self, geometric_normal: Vec3, to_lamp_m: Vec3) -> f32 {
+        let sphere_share = (0.5 + geometric_normal.dot(to_lamp_m) * self.inverse_diameter_per_m()).clamp(0.0, 1.0);
+        if to_lamp_m.length_squared() > self.range_m * self.range_m { 0.0 } else { sphere_share }
     }
 }

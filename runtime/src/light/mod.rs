@@ -153,6 +153,12 @@ impl Moment {
         }
     }
 
+    /// The sun's visibility where nothing hides it: the share of its disc in front of the surface's plane. Twin of
+    /// `baked/sun_open.wgsl`.
+    pub fn open_visibility(&self, geometric_normal: Vec3) -> f32 {
+        (0.5 + geometric_normal.dot(self.sun_direction) * self.inverse_angular_diameter).clamp(0.0, 1.0)
+    }
+
     fn sun_cos_radius(&self) -> f32 {
         if self.sun_radius_rad > 0.0 { self.sun_radius_rad.cos() } else { 2.0 }
     }

@@ -1,4 +1,4 @@
-//! The sky's colour in a direction: twin of `frame/sky_color.wgsl`, same names, same order.
+//! The sky's colour in a direction: twin of `frame/sky_color.wgsl` and `frame/air_color.wgsl`, same names, same order.
 
 use super::Moment;
 use glam::Vec3;
@@ -13,6 +13,19 @@ impl Moment {
         let depth = 1.0 - 0.45 * smoothstep(1.0, -direction.y);
         let disc = if is_disc { 1.0 } else { 0.0 };
         self.air_color(direction).lerp(light.haze * depth, below) + light.sun_light * (8.0 * disc)
+    }
+
+    /// Light of sky and ground on a white surface that nothing hides, by its unit normal.
+    pub fn hemisphere_light(&self, normal: Vec3) -> Vec3 {
+        self.daylight.ground_light.lerp(self.daylight.sky_light, 0.5 + 0.5 * normal.y)
+    }
+
+    /// Light from around a mirror's unit direction: the sky's colour, or the ground's, the more blurred the rougher the
+    /// mirror is. Twin of `mirrored_light` in `surface/ambient_specular.wgsl`.
+    pub fn mirrored_light(&self, direction: Vec3, roughness: f32) -> Vec3 {
+        let below = smoothstep(0.2, 0.1 - direction.y);
+        let sharp = self.air_color(direction).lerp(self.daylight.ground_light, below);
+        sharp.lerp(self.hemisphere_light(direction), roughness)
     }
 
     /// The sky above the horizon, without the disc.

@@ -13,6 +13,10 @@ pub struct Census {
     pub alpha_test_pipelines: usize,
     /// Pipelines that draw both sides.
     pub two_sided_pipelines: usize,
+    /// Pipelines that reflect highlights.
+    pub specular_pipelines: usize,
+    /// Pipelines that blend.
+    pub blended_pipelines: usize,
     /// Textures of stored times.
     pub time_textures: usize,
     /// Bindings of a lamp: one where there is a lamp.
@@ -25,6 +29,8 @@ pub struct Census {
     pub sky_bindings: usize,
     /// Number of base colour textures.
     pub base_color_textures: usize,
+    /// Number of other textures of surfaces: metal and roughness, normals, emission.
+    pub look_textures: usize,
     /// Number of vertex buffers.
     pub vertex_buffers: usize,
     /// Bind groups that are kept from frame to frame.
@@ -55,9 +61,9 @@ pub struct Census {
 
 impl Census {
     /// How many counts there are.
-    pub(super) const COUNTS: usize = 23;
+    pub(super) const COUNTS: usize = 26;
     /// Which of them are bytes.
-    pub(super) const BYTES: [usize; 3] = [15, 18, 22];
+    pub(super) const BYTES: [usize; 3] = [18, 21, 25];
 
     pub(super) fn counts(&self) -> [u64; Self::COUNTS] {
         [
@@ -65,12 +71,15 @@ impl Census {
             self.pipelines as u64,
             self.alpha_test_pipelines as u64,
             self.two_sided_pipelines as u64,
+            self.specular_pipelines as u64,
+            self.blended_pipelines as u64,
             self.time_textures as u64,
             self.lamp_bindings as u64,
             self.ambient_textures as u64,
             self.wall_textures as u64,
             self.sky_bindings as u64,
             self.base_color_textures as u64,
+            self.look_textures as u64,
             self.vertex_buffers as u64,
             self.bind_groups as u64,
             self.bindings as u64,
@@ -88,31 +97,54 @@ impl Census {
     }
 
     fn of_counts(counts: [u64; Self::COUNTS]) -> Self {
-        let [a, b, c, d, e, f, g, walls, h, i, j, k, l, m, n, map_bytes, o, p, volume_bytes, q, r, s, shadow_bytes] =
-            counts;
+        let [
+            passes,
+            pipelines,
+            alpha_test_pipelines,
+            two_sided_pipelines,
+            specular_pipelines,
+            blended_pipelines,
+            rest @ ..,
+        ] = counts.map(|count| count as usize);
+        let [
+            time_textures,
+            lamp_bindings,
+            ambient_textures,
+            wall_textures,
+            sky_bindings,
+            base_color_textures,
+            rest @ ..,
+        ] = rest;
+        let [look_textures, vertex_buffers, bind_groups, bindings, targets, draws, _, stencil_pipelines, rest @ ..] =
+            rest;
+        let [volume_buffers, _, shadow_pipelines, shadow_maps, shadow_masks, _] = rest;
+        let [map_bytes, volume_bytes, shadow_bytes] = Self::BYTES.map(|i| counts[i]);
         Self {
-            passes: a as usize,
-            pipelines: b as usize,
-            alpha_test_pipelines: c as usize,
-            two_sided_pipelines: d as usize,
-            time_textures: e as usize,
-            lamp_bindings: f as usize,
-            ambient_textures: g as usize,
-            wall_textures: walls as usize,
-            sky_bindings: h as usize,
-            base_color_textures: i as usize,
-            vertex_buffers: j as usize,
-            bind_groups: k as usize,
-            bindings: l as usize,
-            targets: m as usize,
-            draws: n as usize,
+            passes,
+            pipelines,
+            alpha_test_pipelines,
+            two_sided_pipelines,
+            specular_pipelines,
+            blended_pipelines,
+            time_textures,
+            lamp_bindings,
+            ambient_textures,
+            wall_textures,
+            sky_bindings,
+            base_color_textures,
+            look_textures,
+            vertex_buffers,
+            bind_groups,
+            bindings,
+            targets,
+            draws,
             map_bytes,
-            stencil_pipelines: o as usize,
-            volume_buffers: p as usize,
+            stencil_pipelines,
+            volume_buffers,
             volume_bytes,
-            shadow_pipelines: q as usize,
-            shadow_maps: r as usize,
-            shadow_masks: s as usize,
+            shadow_pipelines,
+            shadow_maps,
+            shadow_masks,
             shadow_bytes,
         }
     }

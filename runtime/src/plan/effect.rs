@@ -17,6 +17,16 @@ pub enum DrawEffect {
     AlphaTest,
     /// Surfaces drawn from both sides.
     TwoSidedFaces,
+    /// Metal, and highlights of sun, lamp and sky.
+    Highlights,
+    /// Metallic-roughness textures.
+    MetallicRoughnessTextures,
+    /// Normal maps.
+    NormalMaps,
+    /// Emissive textures.
+    EmissiveTextures,
+    /// Surfaces blended with what lies behind.
+    BlendedSurfaces,
     /// Stored times of the sun.
     SunTimes,
     /// A sun with a width, which softens edges along its path.

@@ -1,19 +1,24 @@
 //! A stage: a scene with the maps that were baked for it, ready to be drawn. Every technique draws a stage.
 
+mod looks;
 mod read;
 mod subsets;
+mod tangents;
 
+pub use looks::mapped_normal;
 pub use read::{MAX_SCENE_BYTES, StageError};
 
 use crate::drawn_sides::{DrawnSides, drawn_sides};
 use crate::light::{LampMoment, Moment};
-use crate::texture::MipChain;
+use crate::texture::{Encoding, MipChain};
 use glam::{Vec2, Vec3, Vec4};
+use looks::StageLooks;
 use std::sync::OnceLock;
 use sunbake::lamp::LampPath;
 use sunbake::maps::{Bits, PageMaps};
 use sunbake::scene::alpha::{blend, image_uvs};
-use sunbake::scene::{Geometry, Material, Mesh, Scene, ShadingNormals};
+use sunbake::scene::looks::Looks;
+use sunbake::scene::{Geometry, LoadLimits, Material, Mesh, Scene, ShadingNormals};
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit, Tracer};
 
@@ -39,6 +44,8 @@ pub struct Stage {
     sides: Vec<DrawnSides>,
     /// For each image, its mip chain, if it is the base colour of some material.
     mips: Vec<Option<MipChain>>,
+    /// How surfaces look, beyond their base colours.
+    looks: StageLooks,
     /// Built on first use: drawing on the GPU needs none.
     tracer: OnceLock<Tracer>,
     /// What the eye sees, where that is more than what casts.
@@ -79,6 +86,8 @@ impl Stage {
         bits: Bits,
         path: Option<SunPath>,
     ) -> Self {
+        let looks = Looks::read(&scene, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES });
+        let looks = StageLooks::new(&scene, looks);
         // Drawing needs what was read, and not the file's bytes.
         scene.file = None;
         let normals = ShadingNormals::new(&scene);
@@ -87,7 +96,7 @@ impl Stage {
         let sides = drawn_sides(&scene, &geometry, is_drawn);
         let mips = mips(&scene);
         let (tracer, eye_tracer) = (OnceLock::new(), OnceLock::new());
-        Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, tracer, eye_tracer }
+        Self { scene, geometry, bits, pages, path, lamp: None, charts, normals, sides, mips, looks, tracer, eye_tracer }
     }
 
     /// The lamp at path time `t`, if there is one.
@@ -172,28 +181,30 @@ impl Stage {
         if normal == glam::DVec3::ZERO { front } else { normal.as_vec3() }
     }
 
-    /// Texels of the base colour texture per metre of a triangle: the square root of the ratio of the two areas. 0
-    /// without texture.
+    /// Texels of the base colour texture per metre of a triangle. 0 without texture.
     pub fn texels_per_metre(&self, triangle: usize, image_uv: [Vec2; 3]) -> f32 {
         let instance = self.geometry.instance[triangle] as usize;
         let Some(texture) = self.scene.material(instance).base_color_texture else { return 0.0 };
         let image = &self.scene.images[texture.image];
-        let size = Vec2::new(image.width as f32, image.height as f32);
-        let [a, b, c] = image_uv.map(|uv| uv * size);
-        let [p, q, r] = self.geometry.triangles[triangle].map(|v| v.as_dvec3());
-        let texels = f64::from((b - a).perp_dot(c - a).abs());
-        (texels / (q - p).cross(r - p).length().max(f64::MIN_POSITIVE)).sqrt().min(1e12) as f32
+        self.texels_per_metre_of(triangle, image_uv, Vec2::new(image.width as f32, image.height as f32))
     }
 
-    /// The first hit of a primary ray: the nearest surface that is drawn and turns a drawn side to the eye.
+    /// The first hit of a primary ray: the nearest surface that is drawn and turns a drawn side to the eye. Blended
+    /// surfaces are solid here, but where they are part of an alpha mask.
     pub fn primary_hit(&self, eye_m: glam::DVec3, direction: glam::DVec3) -> Option<Hit> {
+        self.hit_where(eye_m, direction, |_| true)
+    }
+
+    /// The same among some of the triangles.
+    fn hit_where(&self, eye_m: glam::DVec3, direction: glam::DVec3, is_wanted: impl Fn(usize) -> bool) -> Option<Hit> {
         let direction = direction.normalize();
         self.eye_tracer().closest_hit_where(eye_m, &Direction::new(direction), |triangle| {
             let sides = self.sides[triangle as usize];
-            match sides.front == sides.back {
+            let is_shown = match sides.front == sides.back {
                 true => sides.front,
                 false => (self.geometry.normal(triangle as usize).dot(direction) < 0.0) == sides.front,
-            }
+            };
+            is_shown && is_wanted(triangle as usize)
         })
     }
 
@@ -210,7 +221,7 @@ impl Stage {
     /// Page coordinates of a hit, and its page.
     pub fn page_uv(&self, hit: &Hit) -> Option<(u32, Vec2)> {
         let triangle = hit.triangle as usize;
-        let chart = self.charts[self.geometry.instance[triangle] as usize]?;
+        let chart = self.chart(self.geometry.instance[triangle] as usize)?;
         Some((chart.page, blend(self.corners(triangle).page_uv, hit.barycentric.map(|b| b as f32))))
     }
 }
@@ -219,7 +230,8 @@ fn mips(scene: &Scene) -> Vec<Option<MipChain>> {
     let mut mips: Vec<Option<MipChain>> = scene.images.iter().map(|_| None).collect();
     for instance in 0..scene.instances.len() {
         if let Some(texture) = scene.material(instance).base_color_texture {
-            mips[texture.image].get_or_insert_with(|| MipChain::new(&scene.images[texture.image]));
+            let image = &scene.images[texture.image];
+            mips[texture.image].get_or_insert_with(|| MipChain::new(image, Encoding::Srgb));
         }
     }
     mips

@@ -57,6 +57,15 @@ pub enum StageError {
 impl Stage {
     /// Reads a baked set and its scene.
     pub fn read(folder: &Path) -> Result<Self, StageError> {
+        Self::read_as(folder, true)
+    }
+
+    /// The same with plain looks, as [`Stage::without_looks`]: images that only looks need are not decoded.
+    pub fn read_without_looks(folder: &Path) -> Result<Self, StageError> {
+        Self::read_as(folder, false)
+    }
+
+    fn read_as(folder: &Path, has_looks: bool) -> Result<Self, StageError> {
         let set = sunbake::disk::read::read(folder)?;
         let (file, baked) = (set.scene_file(), set.manifest.scene.sha256.clone());
         if !file.is_file() {
@@ -68,6 +77,7 @@ impl Stage {
             return Err(StageError::Changed { file, found, baked });
         }
         set.manifest.apply_roles(&mut scene);
+        scene.file = scene.file.filter(|_| has_looks);
         let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
         Ok(stage.with_lamp(set.lamp.as_ref()))
     }
@@ -80,7 +90,8 @@ impl Stage {
         Ok(stage.with_lamp(bake.lamp.as_ref()))
     }
 
-    /// A scene for which nothing was baked: it can be drawn and traced, and its maps are empty.
+    /// A scene for which nothing was baked: it can be drawn and traced, and its maps are empty. It has the looks of its
+    /// file; one without a file has plain ones.
     pub fn plain(scene: Scene, path: Option<SunPath>) -> Self {
         let chart = Chart { page: 0, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
         let charts = vec![Some(chart); scene.instances.len()];

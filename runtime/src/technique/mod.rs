@@ -47,9 +47,11 @@ pub trait Technique {
 
     /// The picture, in linear light.
     fn color(&mut self, shot: &Shot, moment: &Moment) -> Result<Raster<Vec3>, GpuError> {
-        let visibility = self.visibility(shot, moment)?;
-        let of_lamp = moment.lamp.map(|_| self.lamp_visibility(shot, moment)).transpose()?;
-        Ok(shade::lit_picture(shot, moment, &visibility, of_lamp.as_ref()))
+        shade::blended_picture(shot, moment, |shot| {
+            let visibility = self.visibility(shot, moment)?;
+            let of_lamp = moment.lamp.map(|_| self.lamp_visibility(shot, moment)).transpose()?;
+            Ok((visibility, of_lamp))
+        })
     }
 
     /// Bytes of memory kept from frame to frame, beyond the scene itself.

@@ -1,6 +1,7 @@
 //! Sets that are baked in code from scenes made in code, for tests of this crate and of those that depend on it. Not
 //! part of the commands.
 
+pub mod looks;
 pub mod maps;
 pub mod masks;
 

@@ -2,6 +2,7 @@
 //! adapter.
 
 mod baked;
+mod looks;
 mod shadow_maps;
 mod volumes;
 

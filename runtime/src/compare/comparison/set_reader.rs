@@ -67,7 +67,8 @@ impl SetReader<'_> {
         let stage = match self.current.take().filter(is_kept) {
             Some((.., stage)) => stage,
             None => {
-                let stage = Stage::read(&set.folder)?.without_lamp().with_ambient(AmbientModel::Hemisphere);
+                let stage =
+                    Stage::read_without_looks(&set.folder)?.without_lamp().with_ambient(AmbientModel::Hemisphere);
                 if playback.lanes as u64 == set.entry.lanes { stage } else { stage.with_one_lane() }
             }
         };

@@ -7,7 +7,7 @@ pub use plan::baked_plan;
 use super::device::{Gpu, GpuError};
 use super::frame::{
     Batch, BatchKey, DEPTH_FORMAT, FrameTarget, FrameTimes, Output, OwnTargets, PassClock, PictureTarget, Program,
-    ProgramTable, SceneOnGpu, readback, sky_program, surface_stages, surface_state, with_pipelines,
+    ProgramTable, SceneOnGpu, lit_state, readback, sky_program, surface_stages, surface_state, with_pipelines,
 };
 use crate::light::Moment;
 use crate::plan::{Census, DrawPlan};
@@ -67,18 +67,23 @@ impl<'g> BakedRenderer<'g> {
     ) -> Result<(), GpuError> {
         let gpu = self.gpu;
         let depth = self.targets.depth(gpu, output, view.size)?;
+        let blended = self.scene.blended_draws(gpu, output, view.eye_m, target.format)?;
         gpu.checked("building pipelines", || self.prepare(output, target.format))?;
         self.scene.frame.write(gpu, encoder, view, moment);
         self.clock.start();
         let into = FrameTarget { output, picture: target, depth, clock: &self.clock };
         let program = |key: &BakedProgram| self.programs.get(key, target.format);
         into.depth_pass(encoder, &self.scene, |key| program(&BakedProgram::Depth(*key)));
+        let surface = |key: &BatchKey| program(&BakedProgram::Surface(output, self.scene.surface_key(key, output)));
         let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
-            let key = BakedProgram::Surface(output, self.scene.surface_key(&batch.key));
-            self.scene.draw_surface(pass, batch, program(&key));
+            self.scene.draw_surface(pass, batch, surface(&batch.key), output);
         };
         let sky = (output == Output::Lit).then(|| program(&BakedProgram::Sky));
-        into.surface_pass(encoder, &self.scene, draw, sky);
+        into.surface_pass(encoder, &self.scene, draw, sky, |pass| {
+            if let Some(blended) = &blended {
+                blended.draw(pass, &self.scene, surface, |_, _| {});
+            }
+        });
         Ok(())
     }
 
@@ -149,6 +154,6 @@ fn surface_program(
         }
     };
     let attributes = sunbake_shaders::attributes(key.surface);
-    let state = surface_state(format, DEPTH_FORMAT, key.is_two_sided);
+    let state = lit_state(key, format, DEPTH_FORMAT);
     Program::new(gpu, &surface_stages(&text, fragment, &attributes), &scene.groups(key), state)
 }

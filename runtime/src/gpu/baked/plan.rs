@@ -52,8 +52,9 @@ fn totals(scene: &SceneNeeds, output: Output) -> Census {
 
 /// The programs of an output.
 pub fn programs(scene: &SceneNeeds, output: Output) -> BTreeSet<BakedProgram> {
-    let of_batch =
-        |key: &BatchKey| [BakedProgram::Depth(depth_key(key)), BakedProgram::Surface(output, scene.surface_key(key))];
+    let surface = |key: &BatchKey| BakedProgram::Surface(output, scene.surface_key(key, output));
+    let depths = scene.solid(output).map(|key| BakedProgram::Depth(depth_key(key)));
+    let surfaces = scene.solid(output).chain(scene.blended(output)).map(surface);
     let sky = (output == Output::Lit).then_some(BakedProgram::Sky);
-    scene.batches.iter().flat_map(of_batch).chain(sky).collect()
+    depths.chain(surfaces).chain(sky).collect()
 }

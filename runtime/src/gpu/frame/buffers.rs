@@ -7,17 +7,21 @@ use crate::gpu::plan::SceneNeeds;
 use crate::light::Moment;
 use crate::stage::Stage;
 use std::collections::BTreeMap;
+use sunbake::scene::looks::Look;
 use sunbake::scene::{Alpha, Material};
 use sunbake_shaders::{FrameUniform, LampUniform, MaterialUniform, SkyUniform, Stream};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Uploads the streams that have vertices.
 pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream, wgpu::Buffer>, GpuError> {
-    let all: [(Stream, &[u8]); 4] = [
+    let all: [(Stream, &[u8]); 7] = [
         (Stream::Position, bytemuck::cast_slice(&vertices.positions)),
         (Stream::Surface, bytemuck::cast_slice(&vertices.surfaces)),
         (Stream::Texture, bytemuck::cast_slice(&vertices.textures)),
         (Stream::Color, bytemuck::cast_slice(&vertices.colors)),
+        (Stream::MetallicRoughness, bytemuck::cast_slice(&vertices.metallic_roughness)),
+        (Stream::Normal, bytemuck::cast_slice(&vertices.normals)),
+        (Stream::Emissive, bytemuck::cast_slice(&vertices.emissive)),
     ];
     let limit = gpu.device.limits().max_buffer_size;
     let mut streams = BTreeMap::new();
@@ -45,7 +49,8 @@ pub struct FrameBindings {
 impl FrameBindings {
     /// Uploads the materials.
     pub fn new(gpu: &Gpu, stage: &Stage, needs: &SceneNeeds) -> Self {
-        let materials: Vec<MaterialUniform> = stage.scene.materials.iter().map(material_uniform).collect();
+        let materials = stage.scene.materials.iter().enumerate();
+        let materials: Vec<MaterialUniform> = materials.map(|(i, m)| material_uniform(m, stage.look(i))).collect();
         let materials = gpu.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("materials"),
             contents: bytemuck::cast_slice(&materials),
@@ -119,7 +124,7 @@ fn bound(
     (layout, group)
 }
 
-fn material_uniform(material: &Material) -> MaterialUniform {
+fn material_uniform(material: &Material, look: &Look) -> MaterialUniform {
     let cutoff = match material.alpha {
         Alpha::Mask { cutoff } => cutoff,
         Alpha::Opaque | Alpha::Invisible => 0.0,
@@ -132,6 +137,10 @@ fn material_uniform(material: &Material) -> MaterialUniform {
         cutoff,
         wrap_u: wrap[0],
         wrap_v: wrap[1],
+        metallic: look.metallic,
+        roughness: look.roughness,
+        normal_scale: look.normal_scale,
+        transmission: look.transmission,
         pad: 0.0,
     }
 }

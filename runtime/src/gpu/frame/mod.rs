@@ -1,6 +1,7 @@
 //! What all renderers share: a stage's buffers and textures, pipelines, targets, passes and readback.
 
 mod batch;
+mod blended;
 mod buffers;
 mod output;
 mod page_textures;
@@ -13,13 +14,17 @@ mod scene;
 mod target;
 mod textures;
 
-pub use batch::{Batch, BatchKey, TextureKey, by_key};
+pub use batch::{Batch, BatchKey, TextureSet, by_key};
+pub use blended::BlendedDraws;
 pub use buffers::write_in_order;
 pub use output::Output;
 pub use page_textures::texture;
 pub use pass_clock::{FrameTimes, PassClock, Phase};
 pub use passes::{FrameTarget, begin_color_pass, begin_depth_pass};
-pub use program::{PipelineState, Program, ShaderStages, depth_state, sky_program, surface_stages, surface_state};
+pub use program::{
+    PipelineState, Program, ShaderStages, depth_state, lit_state, sky_program, surface_stages, surface_state,
+};
 pub use program_table::{ProgramKey, ProgramTable, with_pipelines};
 pub use scene::{SceneOnGpu, depth_key};
 pub use target::{DEPTH_FORMAT, DepthBuffer, OwnTargets, PictureTarget, STENCIL_FORMAT};
+pub use textures::TextureImage;

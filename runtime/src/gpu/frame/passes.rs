@@ -27,28 +27,30 @@ impl FrameTarget<'_> {
     ) {
         let mut pass = begin_depth_pass(encoder, "depth", self.depth.cleared(), self.clock, Phase::Depth);
         pass.set_bind_group(0, &scene.frame.group, &[]);
-        for batch in &scene.batches {
+        for batch in scene.solid(self.output) {
             scene.draw_depth(&mut pass, batch, program(&depth_key(&batch.key)));
         }
     }
 
-    /// Draws surfaces where depths are equal, and the sky where there is one.
+    /// Draws surfaces where depths are equal, the sky where there is one, and then what `finish` draws.
     pub fn surface_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         scene: &SceneOnGpu,
         draw: impl Fn(&mut wgpu::RenderPass<'_>, &Batch),
         sky: Option<&Program>,
+        finish: impl FnOnce(&mut wgpu::RenderPass<'_>),
     ) {
         let color = self.picture.attachment(wgpu::LoadOp::Clear(self.output.background()));
         let depth = Some(self.depth.read_only());
         let mut pass = begin_color_pass(encoder, "surfaces", color, depth, self.clock, Phase::Light);
         pass.set_bind_group(0, &scene.frame.group, &[]);
-        scene.batches.iter().for_each(|batch| draw(&mut pass, batch));
+        scene.solid(self.output).for_each(|batch| draw(&mut pass, batch));
         if let Some(sky) = sky {
             pass.set_pipeline(&sky.pipeline);
             pass.draw(0..3, 0..1);
         }
+        finish(&mut pass);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Render pipelines.
 
 use super::batch::BatchKey;
+use super::blended::blended_state;
 use super::scene::SceneOnGpu;
 use crate::gpu::device::Gpu;
 use sunbake_shaders::{Attribute, Format, Stream, SurfaceVariant};
@@ -136,6 +137,12 @@ impl Program {
 /// The vertex stage of surfaces, and a fragment stage.
 pub fn surface_stages<'a>(text: &'a str, fragment: &'a str, attributes: &'a [Attribute]) -> ShaderStages<'a> {
     ShaderStages { text, vertex: "surface_vertex", fragment: Some(fragment), attributes }
+}
+
+/// State of pipelines that light a batch: where depths are equal, or blended where nothing lies in front.
+pub fn lit_state(key: &BatchKey, format: wgpu::TextureFormat, depth_format: wgpu::TextureFormat) -> PipelineState {
+    let state = if key.surface.look.is_blended { blended_state } else { surface_state };
+    state(format, depth_format, key.is_two_sided)
 }
 
 /// State of pipelines that draw where depths are equal.

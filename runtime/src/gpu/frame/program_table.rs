@@ -61,6 +61,10 @@ pub fn with_pipelines<'a, K: ProgramKey + 'a>(census: Census, keys: impl Iterato
                 + usize::from(surface.is_some_and(|batch| batch.surface.has_alpha_mask)),
             two_sided_pipelines: census.two_sided_pipelines
                 + usize::from(surface.is_some_and(|batch| batch.is_two_sided)),
+            specular_pipelines: census.specular_pipelines
+                + usize::from(surface.is_some_and(|batch| batch.surface.look.is_specular)),
+            blended_pipelines: census.blended_pipelines
+                + usize::from(surface.is_some_and(|batch| batch.surface.look.is_blended)),
             ..census
         }
     })

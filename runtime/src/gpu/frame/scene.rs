@@ -1,15 +1,18 @@
 //! A stage's surfaces on the GPU: what every technique that draws there shares.
 
-use super::batch::{Batch, BatchKey, batches};
+use super::Output;
+use super::batch::{Batch, BatchKey, TextureSet, batches};
+use super::blended::{BlendedDraws, BlendedTriangles};
 use super::buffers::{FrameBindings, upload_streams};
 use super::page_textures::PageTextures;
 use super::program::Program;
-use super::textures::BaseTextures;
+use super::textures::SurfaceTextures;
 use crate::gpu::device::{Gpu, GpuError};
 use crate::gpu::plan::{PageNeeds, SceneNeeds};
 use crate::plan::Census;
 use crate::shadow_maps::Ground;
 use crate::stage::Stage;
+use glam::Vec3;
 use std::collections::BTreeMap;
 use sunbake_shaders::{PageVariant, Stream};
 
@@ -21,12 +24,14 @@ pub struct SceneOnGpu {
     pub batches: Vec<Batch>,
     /// Casters that are not drawn; only with a ground.
     pub hidden: Vec<Batch>,
+    /// What lit pictures blend.
+    pub blended: BlendedTriangles,
     /// Vertex buffers, one for each stream in use.
     pub streams: BTreeMap<Stream, wgpu::Buffer>,
     /// Textures of each atlas page.
     pub pages: Vec<PageTextures>,
-    /// Base colour textures that some surface is drawn with.
-    pub textures: BaseTextures,
+    /// Textures that some surface is drawn with.
+    pub textures: SurfaceTextures,
     /// The frame's own buffers.
     pub frame: FrameBindings,
 }
@@ -43,16 +48,32 @@ impl SceneOnGpu {
         let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key));
         let page = |(maps, page): (_, &PageNeeds)| PageTextures::new(gpu, maps, stage.bits, &page.variant);
         let pages = stage.pages.iter().zip(&needs.pages).map(page).collect::<Result<_, _>>()?;
-        let (hidden, batches) = batches.into_iter().partition(|batch| batch.key.is_hidden);
+        let (hidden, batches): (Vec<_>, Vec<_>) = batches.into_iter().partition(|batch| batch.key.is_hidden);
         Ok(Self {
             streams: upload_streams(gpu, &vertices)?,
+            blended: BlendedTriangles::new(&batches, &vertices.positions),
             batches,
             hidden,
             pages,
-            textures: BaseTextures::new(gpu, stage, &needs.textures())?,
+            textures: SurfaceTextures::new(gpu, stage, &needs.texture_sets())?,
             frame: FrameBindings::new(gpu, stage, &needs),
             needs,
         })
+    }
+
+    /// What pictures of an output blend, in the order in which an eye sees it. None where they blend nothing.
+    pub fn blended_draws(
+        &self,
+        gpu: &Gpu,
+        output: Output,
+        eye_m: Vec3,
+        format: wgpu::TextureFormat,
+    ) -> Result<Option<BlendedDraws>, GpuError> {
+        if output != Output::Lit || self.blended.batches.is_empty() {
+            return Ok(None);
+        }
+        gpu.check_blendable(format, "blend surfaces in pictures of 32 bits")?;
+        Ok(self.blended.draws(gpu, eye_m))
     }
 
     /// How a batch's page is read.
@@ -61,19 +82,23 @@ impl SceneOnGpu {
     }
 
     /// The key of a batch's program: pages that programs read alike share one.
-    pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
-        self.needs.surface_key(key)
+    pub fn surface_key(&self, key: &BatchKey, output: Output) -> BatchKey {
+        self.needs.surface_key(key, output)
+    }
+
+    /// What pictures of an output show as solid.
+    pub fn solid(&self, output: Output) -> impl Iterator<Item = &Batch> {
+        self.batches.iter().filter(move |batch| batch.key.is_solid_in(output))
     }
 
     /// Layouts of the bindings of a program that shades a batch.
     pub fn groups(&self, key: &BatchKey) -> [Option<&wgpu::BindGroupLayout>; 3] {
-        let texture = self.textures.layout.as_ref().filter(|_| key.surface.is_textured);
-        [Some(&self.frame.layout), self.pages[key.page as usize].layout.as_ref(), texture]
+        [Some(&self.frame.layout), self.pages[key.page as usize].layout.as_ref(), self.textures.layout(key)]
     }
 
     /// The program that finds a batch's depths.
     pub fn depth_program(&self, gpu: &Gpu, key: &BatchKey, format: wgpu::TextureFormat) -> Program {
-        let texture = self.textures.layout.as_ref().filter(|_| key.surface.is_textured);
+        let texture = self.textures.layout(key);
         Program::depth(gpu, key, &self.frame.layout, texture, format)
     }
 
@@ -81,17 +106,18 @@ impl SceneOnGpu {
     pub fn census(&self) -> Census {
         let page_groups = self.pages.iter().filter(|page| page.bind_group.is_some()).count();
         let page_bindings: usize = self.pages.iter().map(|page| page.binding_count).sum();
-        let texture_groups = self.textures.bind_groups.len();
+        let (texture_groups, texture_bindings) = self.textures.group_counts();
         Census {
             time_textures: self.pages.iter().map(|page| page.time_textures).sum(),
             lamp_bindings: usize::from(self.frame.lamp.is_some()),
             ambient_textures: self.pages.iter().map(|page| page.ambient_textures).sum(),
             wall_textures: self.pages.iter().map(|page| page.wall_textures).sum(),
             sky_bindings: usize::from(self.frame.sky.is_some()),
-            base_color_textures: self.textures.texture_count,
+            base_color_textures: self.textures.base_count,
+            look_textures: self.textures.look_count,
             vertex_buffers: self.streams.len(),
             bind_groups: 1 + page_groups + texture_groups,
-            bindings: self.frame.binding_count + page_bindings + BaseTextures::BINDINGS * texture_groups,
+            bindings: self.frame.binding_count + page_bindings + texture_bindings,
             draws: self.batches.len(),
             map_bytes: self.pages.iter().map(|page| page.bytes).sum(),
             ..Census::default()
@@ -100,40 +126,51 @@ impl SceneOnGpu {
 
     /// Draws depths.
     pub fn draw_depth(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
-        self.draw_with(pass, batch, program, batch.key.surface.has_alpha_mask);
+        let textures = batch.key.textures.base_alone();
+        self.bind(pass, batch, program, batch.key.surface.has_alpha_mask.then_some(textures));
+        pass.draw(0..batch.vertex_count, 0..1);
     }
 
     /// Draws surfaces.
-    pub fn draw_surface(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
-        pass.set_bind_group(1, self.pages[batch.key.page as usize].bind_group.as_ref(), &[]);
-        self.draw_with(pass, batch, program, true);
+    pub fn draw_surface(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program, output: Output) {
+        self.bind_page(pass, batch);
+        self.draw_without_page(pass, batch, program, output);
     }
 
     /// Draws surfaces with programs that read no maps.
-    pub fn draw_without_page(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program) {
-        self.draw_with(pass, batch, program, true);
+    pub fn draw_without_page(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program, output: Output) {
+        self.bind(pass, batch, program, Some(batch.key.for_output(output).textures));
+        pass.draw(0..batch.vertex_count, 0..1);
     }
 
-    fn draw_with(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch, program: &Program, wants_texture: bool) {
+    /// Binds the maps of a batch.
+    pub(super) fn bind_page(&self, pass: &mut wgpu::RenderPass<'_>, batch: &Batch) {
+        pass.set_bind_group(1, self.pages[batch.key.page as usize].bind_group.as_ref(), &[]);
+    }
+
+    /// Binds a program, textures and vertices.
+    pub(super) fn bind(
+        &self,
+        pass: &mut wgpu::RenderPass<'_>,
+        batch: &Batch,
+        program: &Program,
+        textures: Option<TextureSet>,
+    ) {
         pass.set_pipeline(&program.pipeline);
-        if let Some(texture) = batch.key.texture.filter(|_| wants_texture) {
-            pass.set_bind_group(2, &self.textures.bind_groups[&texture], &[]);
+        if let Some(group) = textures.and_then(|set| self.textures.group(&set)) {
+            pass.set_bind_group(2, group, &[]);
         }
         for (index, stream) in program.streams.iter().enumerate() {
-            let first = match stream {
-                Stream::Position | Stream::Surface => batch.first,
-                Stream::Texture => batch.first_texture,
-                Stream::Color => batch.first_color,
-            };
-            pass.set_vertex_buffer(index as u32, self.streams[stream].slice(first * stream.stride()..));
+            let first = batch.first_in(*stream) * stream.stride();
+            pass.set_vertex_buffer(index as u32, self.streams[stream].slice(first..));
         }
-        pass.draw(0..batch.vertex_count, 0..1);
     }
 }
 
 /// The key of a batch's depth program. Only alpha masks tell surfaces apart there.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
+    let key = key.without_look();
     let surface = if key.surface.has_alpha_mask { key.surface } else { Default::default() };
     let (is_ground, is_hidden, is_passed, is_open) = (false, false, false, false);
-    BatchKey { surface, page: 0, texture: None, is_ground, is_hidden, is_passed, is_open, ..*key }
+    BatchKey { surface, page: 0, textures: TextureSet::default(), is_ground, is_hidden, is_passed, is_open, ..key }
 }

@@ -1,11 +1,11 @@
 //! Decisions about the effects that all renderers share: those of surfaces, their maps and their textures.
 
 use super::SceneNeeds;
-use crate::gpu::frame::{BatchKey, Output, depth_key};
+use crate::gpu::frame::{BatchKey, Output, TextureSet, depth_key};
 use crate::plan::{Census, DrawEffect, DrawNeed, Reason};
 use crate::stage::Stage;
 use std::collections::BTreeSet;
-use sunbake_shaders::{AmbientModel, LaneVariant, PageVariant, SurfaceVariant};
+use sunbake_shaders::{AmbientModel, LaneVariant, LookVariant, PageVariant, SurfaceVariant};
 
 /// Decisions where only the maps take anything, and their bytes: for pictures that the CPU draws.
 pub fn of_maps_alone(stage: &Stage) -> (Vec<DrawNeed>, u64) {
@@ -26,12 +26,8 @@ impl SceneEffects<'_> {
     /// Decisions about every effect of the scene itself.
     pub fn all(&self) -> Vec<DrawNeed> {
         let surfaces = [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided()];
-        surfaces
-            .into_iter()
-            .chain(self.of_times())
-            .chain(self.of_ambient())
-            .chain([self.walls(), self.pages()])
-            .collect()
+        let surfaces = surfaces.into_iter().chain(self.of_looks());
+        surfaces.chain(self.of_times()).chain(self.of_ambient()).chain([self.walls(), self.pages()]).collect()
     }
 
     /// What a change to the scene would save.
@@ -51,9 +47,60 @@ impl SceneEffects<'_> {
         let count = self.scene.census().base_color_textures;
         self.of_surfaces(DrawEffect::BaseColorTextures, count, |key| BatchKey {
             surface: SurfaceVariant { is_textured: false, ..key.surface },
-            texture: None,
+            textures: TextureSet { base: None, ..key.textures },
             ..*key
         })
+    }
+
+    /// What only lit pictures show.
+    fn of_looks(&self) -> [DrawNeed; 5] {
+        let count =
+            |is_so: fn(&LookVariant) -> bool| self.scene.batches.iter().filter(|key| is_so(&key.surface.look)).count();
+        let strip = |effect, is_so, change: fn(&mut LookVariant, &mut TextureSet)| {
+            self.of_surfaces(effect, count(is_so), |key| {
+                let mut key = *key;
+                change(&mut key.surface.look, &mut key.textures);
+                key
+            })
+        };
+        [
+            strip(
+                DrawEffect::Highlights,
+                |look| look.is_specular,
+                |look, textures| {
+                    (look.is_specular, look.has_metallic_roughness_map) = (false, false);
+                    textures.metallic_roughness = None;
+                },
+            ),
+            strip(
+                DrawEffect::MetallicRoughnessTextures,
+                |look| look.has_metallic_roughness_map,
+                |look, textures| {
+                    (look.has_metallic_roughness_map, textures.metallic_roughness) = (false, None);
+                },
+            ),
+            strip(
+                DrawEffect::NormalMaps,
+                |look| look.has_normal_map,
+                |look, textures| {
+                    (look.has_normal_map, textures.normal) = (false, None);
+                },
+            ),
+            strip(
+                DrawEffect::EmissiveTextures,
+                |look| look.has_emissive_map,
+                |look, textures| {
+                    (look.has_emissive_map, textures.emissive) = (false, None);
+                },
+            ),
+            self.blended(),
+        ]
+    }
+
+    fn blended(&self) -> DrawNeed {
+        let count = self.scene.blended(Output::Lit).count();
+        let strip = |scene: &mut SceneNeeds| change_keys(scene, |key| BatchKey { is_blended: false, ..*key });
+        DrawNeed::new(DrawEffect::BlendedSurfaces, (count > 0).then(|| self.saved_by(strip)), Reason::Count(count))
     }
 
     fn vertex_colors(&self) -> DrawNeed {
@@ -166,7 +213,7 @@ impl SceneEffects<'_> {
 
 /// The passes of every renderer: depths, and what lights.
 pub fn of_passes(scene: &SceneNeeds, output: Output, lit_pipelines: usize) -> [DrawNeed; 3] {
-    let depth_keys: BTreeSet<BatchKey> = scene.batches.iter().map(depth_key).collect();
+    let depth_keys: BTreeSet<BatchKey> = scene.solid(output).map(depth_key).collect();
     let pass = |pipelines| Census { passes: 1, pipelines, targets: 1, ..Census::default() };
     let background = Census { pipelines: 1, ..Census::default() };
     let is_lit = output == Output::Lit;

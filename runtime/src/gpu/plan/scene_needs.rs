@@ -1,7 +1,7 @@
 //! What a stage's surfaces, their maps and their textures call for. [`SceneOnGpu`](crate::gpu::frame::SceneOnGpu)
 //! builds what is stated here, and plans count it.
 
-use crate::gpu::frame::{BatchKey, TextureKey, by_key};
+use crate::gpu::frame::{BatchKey, Output, TextureImage, TextureSet, by_key};
 use crate::plan::Census;
 use crate::playback::page_variant;
 use crate::shadow_maps::Ground;
@@ -58,9 +58,20 @@ impl SceneNeeds {
         }
     }
 
-    /// Everything that has vertices.
+    /// Everything that casts or may be shown as solid.
     pub fn surfaces(&self) -> impl Iterator<Item = &BatchKey> {
         self.batches.iter().chain(&self.hidden)
+    }
+
+    /// What pictures of an output show as solid.
+    pub fn solid(&self, output: Output) -> impl Iterator<Item = &BatchKey> + Clone {
+        self.batches.iter().filter(move |key| key.is_solid_in(output))
+    }
+
+    /// What pictures of an output blend.
+    pub fn blended(&self, output: Output) -> impl Iterator<Item = &BatchKey> + Clone {
+        let is_lit = output == Output::Lit;
+        self.batches.iter().filter(move |key| is_lit && key.is_blended)
     }
 
     /// How programs read a batch's page.
@@ -69,25 +80,34 @@ impl SceneNeeds {
     }
 
     /// The key of a batch's program. Pages that programs read alike share one.
-    pub fn surface_key(&self, key: &BatchKey) -> BatchKey {
+    pub fn surface_key(&self, key: &BatchKey, output: Output) -> BatchKey {
         let variant = self.variant(key);
         let page = self.pages.iter().position(|page| page.variant == *variant).unwrap_or(0) as u32;
-        BatchKey { page, texture: None, is_passed: false, is_open: false, ..*key }
+        let textures = TextureSet::default();
+        BatchKey { page, textures, is_passed: false, is_open: false, ..key.for_output(output) }
     }
 
-    /// Base colour textures with their samplers.
-    pub fn textures(&self) -> BTreeSet<TextureKey> {
-        self.surfaces().filter_map(|key| key.texture).collect()
+    /// Sets of textures that are bound together: base colours alone where depths or visibility are found, and all of a
+    /// surface's textures where it is lit.
+    pub fn texture_sets(&self) -> BTreeSet<TextureSet> {
+        let alone = self.surfaces().map(|key| key.textures.base_alone());
+        let sets = alone.chain(self.batches.iter().map(|key| key.textures));
+        sets.filter(|set| *set != TextureSet::default()).collect()
+    }
+
+    /// Number of base colour textures, and of other ones.
+    pub fn texture_counts(&self) -> [usize; 2] {
+        let sets = self.texture_sets();
+        let images: BTreeSet<TextureImage> =
+            sets.iter().flat_map(TextureSet::in_order).flatten().map(|key| key.source()).collect();
+        let base = images.iter().filter(|(.., is_base)| *is_base).count();
+        [base, images.len() - base]
     }
 
     /// Vertex streams in use.
     pub fn streams(&self) -> BTreeSet<Stream> {
-        let of_key = |key: &BatchKey| {
-            let texture = key.surface.is_textured.then_some(Stream::Texture);
-            let color = key.surface.has_vertex_color.then_some(Stream::Color);
-            [Some(Stream::Position), Some(Stream::Surface), texture, color]
-        };
-        self.surfaces().flat_map(of_key).flatten().collect()
+        let of_key = |key: &BatchKey| sunbake_shaders::attributes(key.surface).into_iter().map(|a| a.stream);
+        self.surfaces().flat_map(of_key).collect()
     }
 
     /// Whether some page reads the sky in spherical harmonics.
@@ -97,8 +117,8 @@ impl SceneNeeds {
 
     /// Counts of all of that, without programs, passes and targets.
     pub fn census(&self) -> Census {
-        let textures = self.textures();
-        let images: BTreeSet<usize> = textures.iter().map(|key| key.image).collect();
+        let textures = self.texture_sets();
+        let [base_color_textures, look_textures] = self.texture_counts();
         let bindings = || self.pages.iter().map(PageNeeds::binding_count).filter(|&bindings| bindings > 0);
         let of_frame = 2 + usize::from(self.has_lamp) + usize::from(self.has_sky());
         Census {
@@ -107,10 +127,13 @@ impl SceneNeeds {
             ambient_textures: self.pages.iter().map(PageNeeds::ambient_textures).sum(),
             wall_textures: self.pages.iter().map(PageNeeds::wall_textures).sum(),
             sky_bindings: usize::from(self.has_sky()),
-            base_color_textures: images.len(),
+            base_color_textures,
+            look_textures,
             vertex_buffers: self.streams().len(),
             bind_groups: 1 + bindings().count() + textures.len(),
-            bindings: of_frame + bindings().sum::<usize>() + 2 * textures.len(),
+            bindings: of_frame
+                + bindings().sum::<usize>()
+                + textures.iter().map(TextureSet::binding_count).sum::<usize>(),
             draws: self.batches.len(),
             map_bytes: self.pages.iter().map(|page| page.bytes(self.bits)).sum(),
             ..Census::default()

@@ -3,7 +3,7 @@
 use super::bindings::MapReads;
 use super::decisions::{MapDecisions, ground_apart};
 use super::programs::{MapProgram, SunReads, caster_key};
-use crate::gpu::frame::{BatchKey, Output, depth_key, with_pipelines};
+use crate::gpu::frame::{BatchKey, Output, TextureSet, depth_key, with_pipelines};
 use crate::gpu::plan::{SceneEffects, SceneNeeds, of_passes};
 use crate::plan::{Census, DrawPlan};
 use crate::shadow_maps::{MOST_MAPS, MapSettings, ShadowScene, Variant};
@@ -116,16 +116,21 @@ impl MapNeeds {
     pub fn surface_program_key(&self, scene: &SceneNeeds, key: &BatchKey) -> MapProgram {
         let sun = self.sun_of(key);
         let key = match self.output {
-            Output::Visibility => BatchKey { page: 0, texture: None, is_passed: false, is_open: false, ..*key },
-            Output::Lit | Output::LampVisibility => scene.surface_key(key),
+            Output::Visibility => {
+                let textures = TextureSet::default();
+                BatchKey { page: 0, textures, is_passed: false, is_open: false, ..key.without_look() }
+            }
+            Output::Lit | Output::LampVisibility => scene.surface_key(key, self.output),
         };
         MapProgram::Surface(self.output, sun, BatchKey { is_ground: false, ..key })
     }
 
     /// Keys of every program of the picture.
     pub fn programs(&self, scene: &SceneNeeds) -> BTreeSet<MapProgram> {
-        let of_batch = |key: &BatchKey| [MapProgram::Depth(depth_key(key)), self.surface_program_key(scene, key)];
-        let mut all: BTreeSet<MapProgram> = scene.batches.iter().flat_map(of_batch).collect();
+        let depths = scene.solid(self.output).map(|key| MapProgram::Depth(depth_key(key)));
+        let surfaces = scene.solid(self.output).chain(scene.blended(self.output));
+        let mut all: BTreeSet<MapProgram> =
+            depths.chain(surfaces.map(|key| self.surface_program_key(scene, key))).collect();
         all.extend((self.output == Output::Lit).then_some(MapProgram::Sky));
         if !self.is_shaded() {
             return all;

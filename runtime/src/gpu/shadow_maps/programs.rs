@@ -5,7 +5,7 @@ use super::bindings::blur_layout;
 use super::textures::MASK_FORMAT;
 use crate::gpu::frame::{
     BatchKey, DEPTH_FORMAT, Output, PipelineState, Program, ProgramKey, ShaderStages, depth_key, depth_state,
-    sky_program, surface_stages, surface_state,
+    lit_state, sky_program, surface_stages, surface_state,
 };
 use crate::shadow_maps::Variant;
 use sunbake_shaders::{ShadowBias, ShadowFilter, ShadowMapChoice, ShadowSource, ShadowTap, SurfaceVariant};
@@ -110,7 +110,7 @@ impl MapRenderer<'_> {
         let page = page.filter(|_| output != Output::Visibility);
         let maps =
             matches!(sun, SunReads::Maps | SunReads::Mask | SunReads::Flat).then_some(&self.bindings.read_layout);
-        let state = surface_state(format, DEPTH_FORMAT, key.is_two_sided);
+        let state = lit_state(key, format, DEPTH_FORMAT);
         Program::new(self.gpu, &surface_stages(&text, fragment, &attributes), &[frame, page, texture, maps], state)
     }
 

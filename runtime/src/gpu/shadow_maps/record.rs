@@ -6,7 +6,7 @@ use super::textures::{CasterMask, DepthMaps};
 use super::{MapRenderer, MapReport, SunNow};
 use crate::View;
 use crate::gpu::device::GpuError;
-use crate::gpu::frame::{Batch, FrameTarget, Output, PictureTarget, readback};
+use crate::gpu::frame::{Batch, BatchKey, FrameTarget, Output, PictureTarget, readback};
 use crate::light::Moment;
 use std::time::Instant;
 
@@ -49,6 +49,7 @@ impl MapRenderer<'_> {
         };
         let needs = self.needs_of(view.size, output, &now);
         let depth = self.targets.depth(gpu, output, view.size)?;
+        let blended = self.scene.blended_draws(gpu, output, view.eye_m, target.format)?;
         gpu.checked("building pipelines", || self.prepare(view.size, &needs, target.format))??;
         self.scene.frame.write(gpu, encoder, view, moment);
         self.clock.start();
@@ -60,18 +61,26 @@ impl MapRenderer<'_> {
         let into = FrameTarget { output, picture: target, depth, clock: &self.clock };
         let program = |key: &MapProgram| self.programs.get(key, target.format);
         into.depth_pass(encoder, &self.scene, |key| program(&MapProgram::Depth(*key)));
-        let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
-            let key = needs.surface_program_key(&self.scene.needs, &batch.key);
-            if let MapProgram::Surface(_, SunReads::Maps | SunReads::Mask | SunReads::Flat, _) = key {
+        let surface = |key: &BatchKey| needs.surface_program_key(&self.scene.needs, key);
+        let bind_maps = |pass: &mut wgpu::RenderPass<'_>, key: &BatchKey| {
+            if let MapProgram::Surface(_, SunReads::Maps | SunReads::Mask | SunReads::Flat, _) = surface(key) {
                 pass.set_bind_group(3, self.read_group.as_ref().map(|(group, _)| group), &[]);
             }
+        };
+        let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
+            bind_maps(pass, &batch.key);
+            let program = program(&surface(&batch.key));
             match output {
-                Output::Visibility => self.scene.draw_without_page(pass, batch, program(&key)),
-                Output::Lit | Output::LampVisibility => self.scene.draw_surface(pass, batch, program(&key)),
+                Output::Visibility => self.scene.draw_without_page(pass, batch, program, output),
+                Output::Lit | Output::LampVisibility => self.scene.draw_surface(pass, batch, program, output),
             }
         };
         let sky = (output == Output::Lit).then(|| program(&MapProgram::Sky));
-        into.surface_pass(encoder, &self.scene, draw, sky);
+        into.surface_pass(encoder, &self.scene, draw, sky, |pass| {
+            if let Some(blended) = &blended {
+                blended.draw(pass, &self.scene, |key| program(&surface(key)), bind_maps);
+            }
+        });
         self.report.passes = self.clock.passes();
         self.last = Some(needs.drawn(self.report.drawn));
         Ok(())

@@ -7,7 +7,8 @@ use super::lights::FrameLight;
 use super::programs::{EARLIER_RUN, FaceKey, VolumeProgram, face_key, hard_key};
 use super::record::VolumeTarget;
 use crate::gpu::frame::{
-    DepthBuffer, Output, Phase, PictureTarget, Program, STENCIL_FORMAT, begin_color_pass, begin_depth_pass,
+    BatchKey, BlendedDraws, DepthBuffer, Output, Phase, PictureTarget, Program, STENCIL_FORMAT, begin_color_pass,
+    begin_depth_pass,
 };
 use crate::volumes::FramePlan;
 use sunbake_shaders::VolumeUse;
@@ -78,15 +79,33 @@ impl VolumeRenderer<'_> {
         if let Some((light, _)) = light {
             let share = f64::from(light.share);
             pass.set_blend_constant(wgpu::Color { r: share, g: share, b: share, a: share });
-            for batch in &self.scene.batches {
-                let key = VolumeProgram::Light(light.hard, light.blend, hard_key(&batch.key));
-                self.scene.draw_without_page(&mut pass, batch, program(key));
+            for batch in self.scene.solid(into.output) {
+                let key = VolumeProgram::Light(light.hard, light.blend, hard_key(&batch.key, into.output));
+                self.scene.draw_without_page(&mut pass, batch, program(key), into.output);
             }
         }
         if is_mask && place.is_last {
             pass.set_pipeline(&program(VolumeProgram::Background).pipeline);
             pass.draw(0..3, 0..1);
         }
+    }
+
+    /// Draws blended surfaces over what is lit.
+    pub(super) fn blended_pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        into: &VolumeTarget<'_>,
+        blended: &BlendedDraws,
+    ) {
+        let color = into.picture.attachment(wgpu::LoadOp::Load);
+        let depth = Some(into.depth.read_only());
+        let mut pass = begin_color_pass(encoder, "blended", color, depth, &self.clock, Phase::Light);
+        pass.set_bind_group(0, &self.scene.frame.group, &[]);
+        let program = |key: &BatchKey| {
+            let key = VolumeProgram::Blended(self.scene.surface_key(key, into.output));
+            self.programs.get(&key, into.picture.format)
+        };
+        blended.draw(&mut pass, &self.scene, program, |_, _| {});
     }
 
     /// Draws faces into the picture.

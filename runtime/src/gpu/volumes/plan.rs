@@ -86,12 +86,14 @@ pub fn surface_programs<'a>(
     lights: impl Iterator<Item = (HardLight, LightBlend)> + Clone + 'a,
 ) -> impl Iterator<Item = VolumeProgram> + 'a {
     let of_batch = move |key: &'a BatchKey| {
-        let ambient = (output == Output::Lit).then(|| VolumeProgram::Ambient(scene.surface_key(key)));
-        let lights = lights.clone().map(move |(hard, blend)| VolumeProgram::Light(hard, blend, hard_key(key)));
+        let ambient = (output == Output::Lit).then(|| VolumeProgram::Ambient(scene.surface_key(key, output)));
+        let hard_key = hard_key(key, output);
+        let lights = lights.clone().map(move |(hard, blend)| VolumeProgram::Light(hard, blend, hard_key));
         [VolumeProgram::Depth(depth_key(key))].into_iter().chain(ambient).chain(lights)
     };
     let behind = if output == Output::Lit { VolumeProgram::Sky } else { VolumeProgram::Background };
-    scene.batches.iter().flat_map(of_batch).chain([behind])
+    let blended = scene.blended(output).map(move |key| VolumeProgram::Blended(scene.surface_key(key, output)));
+    scene.solid(output).flat_map(of_batch).chain(blended).chain([behind])
 }
 
 impl VolumeNeeds {
@@ -126,9 +128,13 @@ impl VolumeNeeds {
         let lights = || self.lights_in(scene);
         let is_alone = self.output == Output::Lit || lights().next().is_none();
         let own = scene.census();
+        let blends = scene.blended(self.output).next().is_some();
         let binding_count: usize = lights().map(|light| light.runs * light.binding_count).sum();
         let census = Census {
-            passes: 1 + usize::from(is_alone) + lights().map(|light| light.count + light.shaded).sum::<usize>(),
+            passes: 1
+                + usize::from(is_alone)
+                + usize::from(blends)
+                + lights().map(|light| light.count + light.shaded).sum::<usize>(),
             targets: 2,
             bind_groups: own.bind_groups + lights().map(|light| light.runs).sum::<usize>(),
             bindings: own.bindings + binding_count,
@@ -143,7 +149,9 @@ impl VolumeNeeds {
     /// The plan of a picture.
     pub fn plan(&self, scene: &SceneNeeds, counts: &CasterCounts, settings: &VolumeSettings) -> DrawPlan {
         let totals = |scene: &SceneNeeds| self.totals(scene);
-        let is_lit = |key: &VolumeProgram| matches!(key, VolumeProgram::Light(..) | VolumeProgram::Ambient(_));
+        let is_lit = |key: &VolumeProgram| {
+            matches!(key, VolumeProgram::Light(..) | VolumeProgram::Ambient(_) | VolumeProgram::Blended(_))
+        };
         let lit = self.programs(scene).iter().filter(|key| is_lit(key)).count();
         let of_volumes = VolumeDecisions { needs: self, scene, counts, settings }.all();
         let of_scene = SceneEffects { scene, totals: &totals }.all();

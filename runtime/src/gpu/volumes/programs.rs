@@ -3,8 +3,8 @@
 use super::VolumeRenderer;
 use super::extruded::Extruded;
 use crate::gpu::frame::{
-    BatchKey, PipelineState, Program, ProgramKey, STENCIL_FORMAT, ShaderStages, depth_state, sky_program,
-    surface_stages, surface_state,
+    BatchKey, Output, PipelineState, Program, ProgramKey, STENCIL_FORMAT, ShaderStages, TextureSet, depth_state,
+    lit_state, sky_program, surface_stages, surface_state,
 };
 use crate::volumes::Part;
 use sunbake_shaders::{Filter, HardLight, PageVariant, VolumeCorners, VolumeLight, VolumeUse};
@@ -26,6 +26,8 @@ pub enum VolumeProgram {
     Depth(BatchKey),
     /// Ambient and emitted light.
     Ambient(BatchKey),
+    /// Blended surfaces under all lights.
+    Blended(BatchKey),
     /// The sky.
     Sky,
     /// What a picture of visibility shows where there is no surface.
@@ -41,7 +43,7 @@ pub enum VolumeProgram {
 impl ProgramKey for VolumeProgram {
     fn batch(&self) -> Option<&BatchKey> {
         match self {
-            Self::Depth(key) | Self::Ambient(key) | Self::Light(_, _, key) => Some(key),
+            Self::Depth(key) | Self::Ambient(key) | Self::Blended(key) | Self::Light(_, _, key) => Some(key),
             Self::Sky | Self::Background | Self::Faces(_) | Self::MergeRun => None,
         }
     }
@@ -50,7 +52,7 @@ impl ProgramKey for VolumeProgram {
         match self {
             Self::Depth(_) | Self::MergeRun => false,
             Self::Faces(key) => key.of != VolumeUse::Stencil,
-            Self::Ambient(_) | Self::Sky | Self::Background | Self::Light(..) => true,
+            Self::Ambient(_) | Self::Blended(_) | Self::Sky | Self::Background | Self::Light(..) => true,
         }
     }
 }
@@ -119,6 +121,7 @@ impl VolumeRenderer<'_> {
                 Program::new(gpu, &stages, &[], surface_state(format, STENCIL_FORMAT, true))
             }
             VolumeProgram::Ambient(key) => self.ambient_program(key, format),
+            VolumeProgram::Blended(key) => self.blended_program(key, format),
             VolumeProgram::Light(light, blend, key) => self.light_program(*light, *blend, key, format),
             VolumeProgram::MergeRun => self.merge_program(),
             VolumeProgram::Faces(key) => self.face_program(key, format),
@@ -127,12 +130,25 @@ impl VolumeRenderer<'_> {
 
     /// The lit shader without times of the sun and the lamp: ambient and emitted light are left.
     fn ambient_program(&self, key: &BatchKey, format: wgpu::TextureFormat) -> Program {
-        let page = PageVariant { lanes: Vec::new(), lamp_layer_count: 0, ..self.scene.variant(key).clone() };
-        let text = sunbake_shaders::lit_shader(key.surface, &page, Filter::Bilinear);
+        let text = sunbake_shaders::lit_shader(key.surface, &self.page_without_times(key), Filter::Bilinear);
         let attributes = sunbake_shaders::attributes(key.surface);
         let state = surface_state(format, STENCIL_FORMAT, key.is_two_sided);
         let stages = surface_stages(&text, "lit_fragment", &attributes);
         Program::new(self.gpu, &stages, &self.scene.groups(key), state)
+    }
+
+    /// Blended surfaces are drawn in one pass, under all lights. Volumes are counted at the solid surfaces behind them,
+    /// so that nothing shades them.
+    fn blended_program(&self, key: &BatchKey, format: wgpu::TextureFormat) -> Program {
+        let page = self.page_without_times(key);
+        let text = sunbake_shaders::open_lit_shader(key.surface, &page, self.scene.needs.has_lamp);
+        let attributes = sunbake_shaders::attributes(key.surface);
+        let stages = surface_stages(&text, "lit_fragment", &attributes);
+        Program::new(self.gpu, &stages, &self.scene.groups(key), lit_state(key, format, STENCIL_FORMAT))
+    }
+
+    fn page_without_times(&self, key: &BatchKey) -> PageVariant {
+        PageVariant { lanes: Vec::new(), lamp_layer_count: 0, ..self.scene.variant(key).clone() }
     }
 
     fn light_program(
@@ -214,8 +230,8 @@ pub fn face_key(extruded: &Extruded, part: Part, of: VolumeUse, is_z_pass: bool)
 }
 
 /// The key of a batch's program under a point light, which reads no page.
-pub fn hard_key(key: &BatchKey) -> BatchKey {
-    BatchKey { page: 0, texture: None, is_passed: false, ..*key }
+pub fn hard_key(key: &BatchKey, output: Output) -> BatchKey {
+    BatchKey { page: 0, textures: TextureSet::default(), is_passed: false, ..key.for_output(output) }
 }
 
 /// Counts faces: in front of the surface (z-pass), or behind it.

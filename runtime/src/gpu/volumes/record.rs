@@ -72,6 +72,7 @@ impl VolumeRenderer<'_> {
         self.report = FrameReport::default();
         (self.last, self.last_output) = (Vec::new(), Some(output));
         let lights = self.lights(moment, output);
+        let blended = self.scene.blended_draws(gpu, output, view.eye_m, format)?;
         gpu.checked("building pipelines", || {
             let kinds = lights.iter().map(|light| (light.hard, light.blend));
             self.build(surface_programs(&self.scene.needs, output, kinds).collect(), format);
@@ -88,6 +89,10 @@ impl VolumeRenderer<'_> {
             self.scene.frame.write(gpu, encoder, view, &light.moment);
             let place = PassPlace { is_first: i == 0, is_last: i + 1 == lights.len() };
             self.light(encoder, into, view, light, place)?;
+        }
+        if let Some(blended) = &blended {
+            self.scene.frame.write(gpu, encoder, view, moment);
+            self.blended_pass(encoder, into, blended);
         }
         self.report.passes = self.clock.passes();
         Ok(())
@@ -113,10 +118,10 @@ impl VolumeRenderer<'_> {
         if output == Output::Lit {
             let sky = program(&VolumeProgram::Sky);
             let draw = |pass: &mut wgpu::RenderPass<'_>, batch: &Batch| {
-                let key = VolumeProgram::Ambient(self.scene.surface_key(&batch.key));
-                self.scene.draw_surface(pass, batch, program(&key));
+                let key = VolumeProgram::Ambient(self.scene.surface_key(&batch.key, output));
+                self.scene.draw_surface(pass, batch, program(&key), output);
             };
-            frame.surface_pass(encoder, &self.scene, draw, Some(sky));
+            frame.surface_pass(encoder, &self.scene, draw, Some(sky), |_| {});
         } else if is_unlit {
             self.light_pass(encoder, into, None, PassPlace { is_first: true, is_last: true });
         }

@@ -100,6 +100,13 @@ fn of_count(effect: DrawEffect, count: usize) -> String {
         DrawEffect::VertexColors => ["batch has vertex colours", "batches have vertex colours"],
         DrawEffect::AlphaTest => ["batch has an alpha mask", "batches have alpha masks"],
         DrawEffect::TwoSidedFaces => ["batch shows both sides", "batches show both sides"],
+        DrawEffect::Highlights => ["batch is metallic or has highlights", "batches are metallic or have highlights"],
+        DrawEffect::MetallicRoughnessTextures => {
+            ["batch has a metallic-roughness texture", "batches have metallic-roughness textures"]
+        }
+        DrawEffect::NormalMaps => ["batch has a normal map", "batches have normal maps"],
+        DrawEffect::EmissiveTextures => ["batch has an emissive texture", "batches have emissive textures"],
+        DrawEffect::BlendedSurfaces => ["batch is blended", "batches are blended"],
         DrawEffect::DiscLanes => ["lane is in the set", "lanes are in the set"],
         DrawEffect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
         DrawEffect::SixteenBitTimes => return format!("times have {count} bits"),

@@ -27,6 +27,9 @@ const OTHER_MAP: &str = "another --technique map:VARIANT";
 const WIDTH_COST: &str = "the sun's width measured against each interval, at each texel";
 const PENUMBRA_COST: &str = "a search for blockers a pixel, and as many comparisons as the penumbra is wide";
 const ALPHA_RAY_COST: &str = "alpha looked up wherever a ray meets such a surface";
+const METAL: &str = "a material of metallicFactor above 0 (where it is absent, it is 1) or roughnessFactor below 1";
+const TEXTURE_COST: &str = "a texture an image, a group of bindings, a vertex buffer, and a pipeline a kind of surface";
+const NO_BLEND: &str = "materials of alphaMode OPAQUE or MASK, without KHR_materials_transmission";
 const NO_ALPHA: &str = "materials of alphaMode OPAQUE";
 const ALPHA: &str = "a material of alphaMode MASK or BLEND";
 
@@ -43,7 +46,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 38] = [
+pub const TEXTS: [EffectText; 43] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -101,6 +104,48 @@ pub const TEXTS: [EffectText; 38] = [
         would_take: "a pipeline for depths and one a kind of surface, without culling",
         off_by: "materials without \"doubleSided\"",
         on_by: "a material with \"doubleSided\": true",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::Highlights,
+        name: "metal-and-highlights",
+        would_take: "a pipeline a kind of surface",
+        also_takes: "two lobes of reflected light for each light, and the sky's colour, at each of their pixels",
+        off_by: "materials of metallicFactor 0 and roughnessFactor 1",
+        on_by: METAL,
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::MetallicRoughnessTextures,
+        name: "metallic-roughness-textures",
+        would_take: TEXTURE_COST,
+        off_by: "materials without metallicRoughnessTexture",
+        on_by: "a metallicRoughnessTexture",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::NormalMaps,
+        name: "normal-maps",
+        would_take: TEXTURE_COST,
+        off_by: "materials without normalTexture",
+        on_by: "a normalTexture",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::EmissiveTextures,
+        name: "emissive-textures",
+        would_take: TEXTURE_COST,
+        off_by: "materials without emissiveTexture",
+        on_by: "an emissiveTexture, and an emissiveFactor",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::BlendedSurfaces,
+        name: "blended-surfaces",
+        would_take: "a pipeline a kind of surface; of shadow volumes, a pass",
+        also_takes: "sorting their triangles each frame",
+        off_by: NO_BLEND,
+        on_by: "a material of alphaMode BLEND with alpha below 1, or of KHR_materials_transmission",
         ..NONE
     },
     EffectText {

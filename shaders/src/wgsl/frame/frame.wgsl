@@ -31,6 +31,10 @@ struct Material {
     cutoff: f32,
     wrap_u: u32,
     wrap_v: u32,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    transmission: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -3,6 +3,10 @@ struct Surface {
     ray: vec3<f32>,
     material: Material,
     base_color: vec3<f32>,
+    opacity: f32,
+    metallic: f32,
+    roughness: f32,
+    emitted: vec3<f32>,
     geometric_normal: vec3<f32>,
     normal: vec3<f32>,
 }
@@ -11,7 +15,10 @@ fn surface_at(varyings: Varyings) -> Surface {
     let ray = view_ray(varyings.clip.xy);
     let material = materials[varyings.material];
     let base_color = material.base_color * vertex_color(varyings) * texture_color(varyings, ray);
+    let opacity = opacity_of(base_color.a, material);
+    let metal = metallic_roughness(varyings, ray, material);
+    let emitted = emitted_light(varyings, ray, material);
     let geometric_normal = towards_eye(varyings.front_normal, varyings, ray);
-    let normal = towards_eye(normalize(varyings.shading_normal.xyz), varyings, ray);
-    return Surface(ray, material, base_color.rgb, geometric_normal, normal);
+    let normal = towards_eye(shading_normal(varyings, ray, material), varyings, ray);
+    return Surface(ray, material, base_color.rgb, opacity, metal.x, metal.y, emitted, geometric_normal, normal);
 }

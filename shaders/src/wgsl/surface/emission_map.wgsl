@@ -1,0 +1,8 @@
+// Light that the material emits, times a texture.
+@group(2) @binding(6) var emissive_texture: texture_2d<f32>;
+@group(2) @binding(7) var emissive_sampler: sampler;
+
+fn emitted_light(varyings: Varyings, ray: vec3<f32>, material: Material) -> vec3<f32> {
+    let level = texture_level(varyings, ray, varyings.emissive_texels_per_metre);
+    return material.emissive * textureSampleLevel(emissive_texture, emissive_sampler, varyings.emissive_uv, level).rgb;
+}
