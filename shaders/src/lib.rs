@@ -48,7 +48,9 @@ pub use uniforms::{
     FrameUniform, LampUniform, MOST_SHADOW_MAPS, MaterialUniform, ShadowMapUniform, ShadowMapsUniform, SkyUniform,
     WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
 };
-pub use vertex::{Attribute, ColorVertex, Format, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes};
+pub use vertex::{
+    Attribute, ColorVertex, Format, LiftVertex, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes,
+};
 pub use volumes::{
     HardLight, VolumeCorners, VolumeLight, VolumeUse, background_shader, hard_light_shader, screen_shader,
     volume_shader,

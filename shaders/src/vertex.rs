@@ -18,6 +18,8 @@ pub enum Stream {
     Texture,
     /// [`ColorVertex`]; only of surfaces with vertex colours.
     Color,
+    /// [`LiftVertex`]; only of facets of something smooth, where shadow maps are read.
+    Lift,
 }
 
 impl Stream {
@@ -28,6 +30,7 @@ impl Stream {
             Self::Surface => size_of::<SurfaceVertex>(),
             Self::Texture => size_of::<TextureVertex>(),
             Self::Color => size_of::<ColorVertex>(),
+            Self::Lift => size_of::<LiftVertex>(),
         };
         bytes as u64
     }
@@ -90,6 +93,21 @@ pub struct ColorVertex {
     pub color: [u16; 4],
 }
 
+/// An entry of [`Stream::Lift`]: how the smooth shape rises above its facet.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LiftVertex {
+    /// The vectors that the triangle's edges bulge by, metres, the same at its three corners: of the edge from its first
+    /// corner to the second,
+    pub first_lift_m: [f32; 3],
+    /// from the second to the third,
+    pub second_lift_m: [f32; 3],
+    /// and from the third to the first.
+    pub third_lift_m: [f32; 3],
+    /// Weights of the second and third corner.
+    pub lift_weights: [f32; 2],
+}
+
 /// One attribute of a vertex; its shader location is its place in [`attributes`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Attribute {
@@ -129,6 +147,14 @@ pub fn attributes(surface: SurfaceVariant) -> Vec<Attribute> {
     }
     if surface.has_vertex_color {
         all.push(make("color", Stream::Color, Format::Unorm16x4, offset_of!(ColorVertex, color), false));
+    }
+    if surface.has_lift {
+        let lift = |name, offset| make(name, Stream::Lift, Format::Float3, offset, true);
+        all.push(lift("first_lift_m", offset_of!(LiftVertex, first_lift_m)));
+        all.push(lift("second_lift_m", offset_of!(LiftVertex, second_lift_m)));
+        all.push(lift("third_lift_m", offset_of!(LiftVertex, third_lift_m)));
+        let offset = offset_of!(LiftVertex, lift_weights);
+        all.push(make("lift_weights", Stream::Lift, Format::Float2, offset, false));
     }
     all
 }

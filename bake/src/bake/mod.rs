@@ -25,7 +25,7 @@ use crate::lamp::LampPath;
 use crate::maps::Lane;
 use crate::plan::{Effect, LayersNeeded};
 use crate::progress::{BakeStep, Progress};
-use crate::scene::{self, Geometry, Scene, ShadingNormals};
+use crate::scene::{self, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
 use crate::sun::SunPath;
 use crate::trace::Tracer;
@@ -111,7 +111,7 @@ fn bake_prepared(
     let (atlas, settings) = &timed(&mut seconds.unwrap, || fitting_atlas(scene, settings, &mut warnings, progress))?;
 
     progress.start(BakeStep::Bvh, 0);
-    let geometry = Geometry::new(scene);
+    let geometry = prepared.geometry();
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();

@@ -1,8 +1,8 @@
 //! A baked set's scene and atlas: placements from its manifest, texture coordinates from its scene.
 
-use super::manifest::{InstanceEntry, Manifest};
+use super::manifest::{InstanceEntry, Manifest, SMOOTH_TERMINATOR};
 use crate::atlas::{Atlas, Layout, PageSize, Placement};
-use crate::scene::{Instance, Scene};
+use crate::scene::{Geometry, Instance, Scene};
 use glam::Vec2;
 use std::collections::HashMap;
 
@@ -22,6 +22,19 @@ impl Manifest {
         let is_left_out = |(index, entry): (usize, &Option<&InstanceEntry>)| (*entry)?.atlas.is_none().then_some(index);
         let instances: Vec<usize> = self.entries(scene).iter().enumerate().filter_map(is_left_out).collect();
         scene.turn_into_air(&instances);
+    }
+
+    /// The triangles of the set's scene, as the set was baked: with or without the smooth shapes of which they are facets.
+    pub fn geometry(&self, scene: &Scene) -> Geometry {
+        match self.has_effect(SMOOTH_TERMINATOR) {
+            true => Geometry::new(scene),
+            false => Geometry::faceted(scene),
+        }
+    }
+
+    /// Whether an effect was baked, by its name. Sets that are older than the effect do not have it.
+    pub fn has_effect(&self, name: &str) -> bool {
+        self.effects.iter().any(|entry| entry.on && entry.effect == name)
     }
 
     /// The atlas for the set's scene.

@@ -325,6 +325,9 @@ pub struct InstanceEntry {
     pub double_sided: bool,
 }
 
+/// Name of the effect that players have to know of: light ends on smooth surfaces where their shading normals say.
+pub const SMOOTH_TERMINATOR: &str = "smooth-terminator";
+
 /// One effect: on or off, and why. Cost and toggle are text for people; older sets lack them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectEntry {

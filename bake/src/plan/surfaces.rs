@@ -1,17 +1,26 @@
 //! What is decided about surfaces.
 
 use super::{Decision, Effect, Facts};
-use crate::scene::{Alpha, Material, Scene};
+use crate::scene::{Alpha, Geometry, Material, Scene};
 
-/// What the scene's materials call for.
-pub(super) fn decisions(scene: &Scene) -> [Decision; 3] {
+/// What the scene's materials and normals call for.
+pub(super) fn decisions(scene: &Scene, wants_smooth: bool, has_times: bool) -> [Decision; 4] {
     [
         of_surfaces(scene, Effect::AlphaMask, |material| matches!(material.alpha, Alpha::Mask { .. })),
         of_surfaces(scene, Effect::DoubleSided, |material| {
             material.is_double_sided && material.alpha != Alpha::Invisible
         }),
+        of_smooth(scene, wants_smooth, has_times),
         Decision { effect: Effect::Walls, is_on: !scene.instances.is_empty(), facts: Facts::Walls { pages: None } },
     ]
+}
+
+/// Triangles are counted only where it matters.
+fn of_smooth(scene: &Scene, is_asked: bool, has_times: bool) -> Decision {
+    let count = || Geometry::new(scene).smooth_count();
+    let triangles = if is_asked && has_times { count() } else { 0 };
+    let facts = Facts::Smooth { is_asked, has_times, triangles };
+    Decision { effect: Effect::SmoothTerminator, is_on: triangles > 0, facts }
 }
 
 /// An effect that is on where some drawn surface has such a material.

@@ -46,6 +46,7 @@ mod primitives;
 mod refuse;
 mod resources;
 mod shading;
+mod smooth;
 #[cfg(test)]
 mod tests;
 mod triangles;
@@ -62,6 +63,7 @@ pub use names::{Selection, names};
 pub(crate) use names::{each_once, first_of};
 pub use resources::sha256;
 pub use shading::ShadingNormals;
+pub use smooth::SmoothPoint;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
 ///

@@ -17,6 +17,8 @@ pub enum DrawEffect {
     AlphaTest,
     /// Surfaces drawn from both sides.
     TwoSidedFaces,
+    /// Light that ends on smooth surfaces where their shading normals say.
+    SmoothTerminator,
     /// Stored times of the sun.
     SunTimes,
     /// A sun with a width, which softens edges along its path.

@@ -3,12 +3,12 @@
 //! Vertices are those of [`sunbake::scene::Geometry`], with all transforms applied, so that what is rasterised is bit
 //! for bit what is traced.
 
-use crate::shadow_maps::Ground;
+use crate::shadow_maps::{Ground, free_edge_lifts_m};
 use crate::stage::Stage;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use sunbake::scene::{Alpha, Wrap};
-use sunbake_shaders::{ColorVertex, PositionVertex, SurfaceVariant, SurfaceVertex, TextureVertex};
+use sunbake_shaders::{ColorVertex, LiftVertex, PositionVertex, SurfaceVariant, SurfaceVertex, TextureVertex};
 
 /// What the triangles of one draw share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,6 +25,15 @@ pub struct BatchKey {
     pub page: u32,
     /// Image and wrap modes, if textured.
     pub texture: Option<TextureKey>,
+}
+
+/// What a technique wants of batches.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BatchRequest<'a> {
+    /// The ground, for batches of its own, and beside it what casts and is not drawn.
+    pub ground: Option<&'a Ground>,
+    /// Whether facets of something smooth say how far that is above them.
+    pub wants_lift: bool,
 }
 
 /// A texture with its sampler.
@@ -49,6 +58,8 @@ pub struct Batch {
     pub first_texture: u64,
     /// First vertex in the colour stream, if there are vertex colours.
     pub first_color: u64,
+    /// First vertex in the lift stream, if there are lifts.
+    pub first_lift: u64,
 }
 
 /// All vertices.
@@ -62,6 +73,8 @@ pub struct Vertices {
     pub textures: Vec<TextureVertex>,
     /// Of triangles with vertex colours.
     pub colors: Vec<ColorVertex>,
+    /// Of facets of something smooth, if wanted.
+    pub lifts: Vec<LiftVertex>,
 }
 
 /// A wrap mode as shaders know it.
@@ -75,16 +88,20 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
 
 /// Sorts triangles into batches and lays out the streams. With a ground, the ground gets batches of its own, and so
 /// does what casts and is not drawn.
-pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
+pub fn batches(stage: &Stage, request: BatchRequest) -> (Vec<Batch>, Vertices) {
     let mut vertices = Vertices::default();
-    let batches = by_key(stage, ground).into_iter().map(|(key, triangles)| {
+    let batches = by_key(stage, request).into_iter().map(|(key, triangles)| {
         let batch = Batch {
             key,
             vertex_count: 3 * triangles.len() as u32,
             first: vertices.positions.len() as u64,
             first_texture: vertices.textures.len() as u64,
             first_color: vertices.colors.len() as u64,
+            first_lift: vertices.lifts.len() as u64,
         };
+        if key.surface.has_lift {
+            push_lifts(stage, &triangles, &mut vertices);
+        }
         triangles.into_iter().for_each(|triangle| push_triangle(stage, triangle, &key, &mut vertices));
         batch
     });
@@ -92,7 +109,8 @@ pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices)
 }
 
 /// The triangles of each batch.
-pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<usize>> {
+pub fn by_key(stage: &Stage, request: BatchRequest) -> BTreeMap<BatchKey, Vec<usize>> {
+    let BatchRequest { ground, wants_lift } = request;
     let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
     for instance in 0..stage.scene.instances.len() {
         let key = key(stage, instance);
@@ -104,7 +122,9 @@ pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<
                 continue;
             }
             let is_ground = ground.is_some_and(|ground| ground.holds(triangle));
-            let key = BatchKey { is_two_sided: sides.front && sides.back, is_ground, is_hidden, ..key };
+            let is_smooth = !is_hidden && stage.geometry.is_smooth(triangle);
+            let surface = SurfaceVariant { is_smooth, has_lift: is_smooth && wants_lift, ..key.surface };
+            let key = BatchKey { surface, is_two_sided: sides.front && sides.back, is_ground, is_hidden, ..key };
             triangles.entry(key).or_default().push(triangle);
         }
     }
@@ -119,6 +139,7 @@ fn key(stage: &Stage, instance: usize) -> BatchKey {
             is_textured: texture.is_some(),
             has_vertex_color: stage.mesh(instance).colors.is_some(),
             has_alpha_mask: matches!(material.alpha, Alpha::Mask { .. }),
+            ..SurfaceVariant::default()
         },
         is_two_sided: false,
         is_ground: false,
@@ -132,11 +153,8 @@ fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut 
     let instance = stage.geometry.instance[triangle] as usize;
     let corners = stage.corners(triangle);
     let front_normal = stage.geometry.normal(triangle).as_vec3().to_array();
-    // Corners in the order that is counter-clockwise from the drawn side. A mirrored instance reverses it.
-    let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
-    let order = if is_turned { [0, 2, 1] } else { [0, 1, 2] };
     let texels_per_metre = stage.texels_per_metre(triangle, corners.image_uv);
-    for k in order {
+    for k in corner_order(stage, triangle) {
         let position_m = stage.geometry.triangles[triangle][k].to_array();
         vertices.positions.push(PositionVertex { position_m });
         vertices.surfaces.push(SurfaceVertex {
@@ -152,6 +170,26 @@ fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut 
             let color = corners.color[k].to_array().map(|x| (x.clamp(0.0, 1.0) * 65_535.0).round() as u16);
             vertices.colors.push(ColorVertex { color });
         }
+    }
+}
+
+/// Corners in the order that is counter-clockwise from the drawn side. A mirrored instance reverses it.
+fn corner_order(stage: &Stage, triangle: usize) -> [usize; 3] {
+    let instance = stage.geometry.instance[triangle] as usize;
+    let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
+    if is_turned { [0, 2, 1] } else { [0, 1, 2] }
+}
+
+fn push_lifts(stage: &Stage, triangles: &[usize], vertices: &mut Vertices) {
+    for (&triangle, lifts_m) in triangles.iter().zip(free_edge_lifts_m(stage, triangles)) {
+        let [first_lift_m, second_lift_m, third_lift_m] = lifts_m.map(|lift_m| lift_m.to_array());
+        let vertex = |k: usize| LiftVertex {
+            first_lift_m,
+            second_lift_m,
+            third_lift_m,
+            lift_weights: [1, 2].map(|corner| f32::from(u8::from(k == corner))),
+        };
+        vertices.lifts.extend(corner_order(stage, triangle).map(vertex));
     }
 }
 

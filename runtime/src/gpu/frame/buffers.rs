@@ -13,11 +13,12 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Uploads the streams that have vertices.
 pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream, wgpu::Buffer>, GpuError> {
-    let all: [(Stream, &[u8]); 4] = [
+    let all: [(Stream, &[u8]); 5] = [
         (Stream::Position, bytemuck::cast_slice(&vertices.positions)),
         (Stream::Surface, bytemuck::cast_slice(&vertices.surfaces)),
         (Stream::Texture, bytemuck::cast_slice(&vertices.textures)),
         (Stream::Color, bytemuck::cast_slice(&vertices.colors)),
+        (Stream::Lift, bytemuck::cast_slice(&vertices.lifts)),
     ];
     let limit = gpu.device.limits().max_buffer_size;
     let mut streams = BTreeMap::new();

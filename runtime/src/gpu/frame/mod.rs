@@ -13,7 +13,7 @@ mod scene;
 mod target;
 mod textures;
 
-pub use batch::{Batch, BatchKey, TextureKey, by_key};
+pub use batch::{Batch, BatchKey, BatchRequest, TextureKey, by_key};
 pub use buffers::write_in_order;
 pub use output::Output;
 pub use page_textures::texture;

@@ -100,6 +100,7 @@ fn of_count(effect: DrawEffect, count: usize) -> String {
         DrawEffect::VertexColors => ["batch has vertex colours", "batches have vertex colours"],
         DrawEffect::AlphaTest => ["batch has an alpha mask", "batches have alpha masks"],
         DrawEffect::TwoSidedFaces => ["batch shows both sides", "batches show both sides"],
+        DrawEffect::SmoothTerminator => ["batch is smooth-shaded", "batches are smooth-shaded"],
         DrawEffect::DiscLanes => ["lane is in the set", "lanes are in the set"],
         DrawEffect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
         DrawEffect::SixteenBitTimes => return format!("times have {count} bits"),

@@ -43,7 +43,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 38] = [
+pub const TEXTS: [EffectText; 39] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -101,6 +101,16 @@ pub const TEXTS: [EffectText; 38] = [
         would_take: "a pipeline for depths and one a kind of surface, without culling",
         off_by: "materials without \"doubleSided\"",
         on_by: "a material with \"doubleSided\": true",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::SmoothTerminator,
+        name: "smooth-terminator",
+        why_on: "some surfaces of several faces are smooth-shaded",
+        why_off: "no surface of several faces is smooth-shaded, or the set was baked without regard to it",
+        would_take: "a pipeline a kind of surface; with shadow maps a vertex buffer",
+        off_by: "flat normals, or a set baked with --flat-terminator",
+        on_by: "vertex normals that turn from corner to corner of a triangle",
         ..NONE
     },
     EffectText {
