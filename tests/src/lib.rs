@@ -47,6 +47,12 @@ impl Traced {
         Self { scene, geometry, tracer }
     }
 
+    /// The same without regard to shading normals.
+    pub fn faceted(scene: Scene) -> Self {
+        let geometry = Geometry::faceted(&scene);
+        Self { geometry, ..Self::new(scene) }
+    }
+
     /// The point of a triangle (flat index) with these weights of its second and third corner.
     pub fn point(&self, triangle: usize, barycentric: [f64; 2]) -> SurfacePoint {
         SurfacePoint::of_triangle(&self.scene, &self.geometry, triangle, barycentric)

@@ -53,6 +53,8 @@ pub enum DrawEffect {
     ZFail,
     /// Casters that are not closed.
     OpenMeshes,
+    /// Smooth solids, which cast from their back faces.
+    SmoothSolids,
     /// Silhouettes found by the vertex shader.
     SilhouettesByGpu,
     /// Volumes counted in several runs.

@@ -43,7 +43,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 39] = [
+pub const TEXTS: [EffectText; 40] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -270,6 +270,16 @@ pub const TEXTS: [EffectText; 39] = [
         off_by: "closing their holes, or --leave-out when baking",
         on_by: "a mesh with a hole",
         ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::SmoothSolids,
+        name: "smooth-solids",
+        why_on: "some solids are smooth-shaded: they cast from their back faces",
+        why_off: "no solid that casts is smooth-shaded",
+        would_take: "a pipeline for caps on back faces, and z-fail for such solids",
+        also_takes: "z-fail for such solids",
+        off_by: "flat normals, or a set baked with --flat-terminator",
+        on_by: "a closed mesh whose normals turn from corner to corner of a triangle",
     },
     EffectText {
         effect: DrawEffect::SilhouettesByGpu,
