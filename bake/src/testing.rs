@@ -195,7 +195,12 @@ fn icosahedron() -> Vec<[Vec3; 3]> {
 pub fn ball(columns: u32, rows: u32, centre: Vec3, radius: f32) -> Mesh {
     let across = columns + 1;
     let normal = |i: u32| {
-        let down = (i / across) as f32 / rows as f32 * std::f32::consts::PI;
+        let row = i / across;
+        if row % rows == 0 {
+            // Exact, so that a pole is one point.
+            return if row == 0 { Vec3::Y } else { Vec3::NEG_Y };
+        }
+        let down = row as f32 / rows as f32 * std::f32::consts::PI;
         let around = (i % across % columns) as f32 / columns as f32 * std::f32::consts::TAU;
         Vec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin())
     };

@@ -95,11 +95,13 @@ impl<'a> Oracle<'a> {
             if point.smooth.is_some() {
                 let shape = Shape::at(self.here, point);
                 let side = shape.normal * sign;
-                let risen = start + shape.free_lift(self.here, start, face);
-                seen = vec![
-                    self.seen_from(start, face, |sun| sun.dot(side) > 0.0 && sun.dot(face) > 0.0),
-                    self.seen_from(risen, side, |sun| sun.dot(side) > 0.0 && sun.dot(face) < 0.0),
-                ];
+                seen = vec![self.seen_from(start, face, |sun| sun.dot(side) > 0.0 && sun.dot(face) > 0.0)];
+                // Where the shape is hollow the face itself is in the way of what is below its plane.
+                let lift = shape.free_lift(self.here, start, face);
+                if lift != DVec3::ZERO {
+                    let below_face = |sun: DVec3| sun.dot(side) > 0.0 && sun.dot(face) < 0.0;
+                    seen.push(self.seen_from(start + lift, side, below_face));
+                }
             }
             seen.into_iter().for_each(|seen| lit.iter_mut().zip(seen).for_each(|(lit, seen)| *lit |= seen));
         }
