@@ -196,9 +196,11 @@ pub fn ball(columns: u32, rows: u32, centre: Vec3, radius: f32) -> Mesh {
     let across = columns + 1;
     let normal = |i: u32| {
         let row = i / across;
-        if row % rows == 0 {
-            // Exact, so that a pole is one point.
-            return if row == 0 { Vec3::Y } else { Vec3::NEG_Y };
+        // Exact, so that a pole is one point.
+        match row {
+            0 => return Vec3::Y,
+            _ if row == rows => return Vec3::NEG_Y,
+            _ => {}
         }
         let down = row as f32 / rows as f32 * std::f32::consts::PI;
         let around = (i % across % columns) as f32 / columns as f32 * std::f32::consts::TAU;

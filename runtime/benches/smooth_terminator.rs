@@ -46,7 +46,7 @@ fn main() {
     }
 }
 
-fn measure(gpu: &Gpu, path: &Path, edge: u32, times: usize) {
+fn measure<'g>(gpu: &'g Gpu, path: &Path, edge: u32, times: usize) {
     let scene = load(path, &LoadLimits::default()).expect("it loads");
     let mut bake_s = [f64::INFINITY; 2];
     let mut stages = Vec::new();
@@ -58,7 +58,7 @@ fn measure(gpu: &Gpu, path: &Path, edge: u32, times: usize) {
             stages.push(stage);
         }
     }
-    let pictures = |make: &dyn Fn(&Stage) -> Box<dyn Technique + '_>| {
+    let pictures = |make: &dyn Fn(&Stage) -> Box<dyn Technique + 'g>| {
         let mut least = [[f64::INFINITY; 2]; 2];
         for (stage, least) in stages.iter().zip(&mut least) {
             stage.tracer();
