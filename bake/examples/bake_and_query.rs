@@ -43,12 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let above_m = DVec3::new(spot.x, top_m + 1.0, spot.y) - scene.centre_m;
     let hit = tracer.closest_hit(above_m, &Direction::new(DVec3::NEG_Y)).ok_or("there is no surface")?;
 
-    let point = SurfacePoint {
-        position_m: above_m + DVec3::NEG_Y * hit.distance_m,
-        normal: geometry.normal(hit.triangle as usize),
-        is_double_sided: scene.material(geometry.instance[hit.triangle as usize] as usize).is_double_sided,
-        triangle: hit.triangle,
-    };
+    let point = SurfacePoint::of_triangle(&scene, &geometry, hit.triangle as usize, hit.barycentric);
     let engine = ExactEngine::new(&tracer, std::slice::from_ref(&path));
     println!("exact at the point: {}", clock_times(&path, lit_at(&engine, &point)[0].as_slice()));
     match texel_of(&bake, &scene, &geometry, &hit) {

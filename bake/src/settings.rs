@@ -36,6 +36,10 @@ pub struct BakeSettings {
     /// are hard; with more they soften in as many steps. Maps, and the reads of playback, grow with the number. A light
     /// without width always has one lane.
     pub lane_count: usize,
+    /// Whether light ends on smooth surfaces of few faces where their shading normals say, and not face by face
+    /// ([`crate::scene::SmoothPoint`]). Off, light ends where faces do: for scenes whose normals are not to be trusted.
+    /// Flat faces are baked alike either way. On, texels of smooth surfaces take a short ray and a second query.
+    pub smooth_terminator: bool,
     /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
     /// Ambient light, if it is baked.
@@ -194,6 +198,7 @@ impl BakeSettings {
             bits: Bits::Sixteen,
             layer_cap: 4,
             lane_count: 1,
+            smooth_terminator: true,
             bakes_intervals: true,
             ambient: Some(AmbientRequest::with_rays(128)),
             engine: EngineChoice::Exact,

@@ -193,6 +193,41 @@ fn icosahedron() -> Vec<[Vec3; 3]> {
     faces
 }
 
+/// A ball of `columns` by `rows` faces with smooth normals, its vertices shared as modelling programs share them.
+pub fn ball(columns: u32, rows: u32, centre: Vec3, radius: f32) -> Mesh {
+    let across = columns + 1;
+    let normal = |i: u32| {
+        let row = i / across;
+        // Exact, so that a pole is one point.
+        match row {
+            0 => return Vec3::Y,
+            _ if row == rows => return Vec3::NEG_Y,
+            _ => {}
+        }
+        let down = row as f32 / rows as f32 * std::f32::consts::PI;
+        let around = (i % across % columns) as f32 / columns as f32 * std::f32::consts::TAU;
+        Vec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin())
+    };
+    let normals: Vec<Vec3> = (0..across * (rows + 1)).map(normal).collect();
+    let face = |i: u32| {
+        let (row, column) = (i / columns, i % columns);
+        let [a, b] = [row * across + column, (row + 1) * across + column];
+        let upper = (row > 0).then_some([a, a + 1, b]);
+        let lower = (row + 1 < rows).then_some([a + 1, b + 1, b]);
+        upper.into_iter().chain(lower).flatten()
+    };
+    let indices = (0..columns * rows).flat_map(face).collect();
+    let positions = normals.iter().map(|normal| centre + *normal * radius).collect();
+    Mesh { positions, normals: Some(normals), indices, ..Mesh::default() }
+}
+
+/// The mesh seen from the other side: its triangles and normals turned over.
+pub fn turned_over(mut mesh: Mesh) -> Mesh {
+    mesh.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+    mesh.normals.iter_mut().flatten().for_each(|normal| *normal = -*normal);
+    mesh
+}
+
 /// The next number in [0, 1) of a linear congruential sequence (Knuth's MMIX constants).
 pub fn pseudo_random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -6,7 +6,7 @@ use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
 use crate::scene::{Geometry, LoadError, LoadLimits};
 use crate::trace::Tracer;
-use crate::visibility::BuriedPoints;
+use crate::visibility::{BuriedPoints, SurfaceSide, ray_starts};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -31,6 +31,16 @@ pub struct Texel {
     pub origin: [f64; 3],
     /// Origin of rays towards suns behind the plane, if they count; world space, metres.
     pub origin_back: Option<[f64; 3]>,
+    /// Unit shading normal, world space, of a smooth surface. Suns count that are in front of it, in place of the plane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shading_normal: Option<[f64; 3]>,
+    /// Origin of rays towards suns in front of the shading normal and behind the plane, if there are such rays; world
+    /// space, metres. `origin` is that of suns in front of both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin_lifted: Option<[f64; 3]>,
+    /// The same of the back.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin_lifted_back: Option<[f64; 3]>,
     /// Whether the texel is buried, so that its times are what its neighbours agree on.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_filled: bool,
@@ -71,7 +81,7 @@ pub struct TexelLane {
 pub fn draw(set: &BakedSet, count: usize, seed: u64) -> Result<Vec<Texel>, LoadError> {
     let scene = set.scene(&LoadLimits::default())?;
     let atlas = set.manifest.atlas(&scene);
-    let geometry = Geometry::new(&scene);
+    let geometry = set.manifest.geometry(&scene);
     let tracer = Tracer::new(&scene, &geometry);
     let covered: Vec<(usize, Sample)> = (0..set.pages.len())
         .flat_map(|page| {
@@ -90,7 +100,11 @@ fn describe(set: &BakedSet, buried: &BuriedPoints, page: usize, sample: &Sample)
     let maps = &set.pages[page];
     let point = atlas::surface_point(scene, geometry, sample);
     let world = |p: DVec3| (p + scene.centre_m).to_array();
-    let origin = |side: DVec3| world(tracer.lift(point.position_m, side, point.triangle));
+    let starts = ray_starts(&point);
+    let origin = |side: SurfaceSide, is_lifted: bool| {
+        let start = starts.iter().find(|start| start.side == side && start.is_lifted() == is_lifted);
+        start.map(|start| world(start.origin_m(tracer, &point)))
+    };
     let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
     let texel = sample.texel as usize;
     let is_filled = lanes.iter().any(|lane| !lane.lit.is_empty()) && buried.is_buried(&point);
@@ -104,8 +118,11 @@ fn describe(set: &BakedSet, buried: &BuriedPoints, page: usize, sample: &Sample)
         position: world(point.position_m),
         normal: point.normal.to_array(),
         double_sided: point.is_double_sided,
-        origin: origin(point.normal),
-        origin_back: point.is_double_sided.then(|| origin(-point.normal)),
+        origin: origin(SurfaceSide::Front, false).unwrap_or_else(|| world(point.position_m)),
+        origin_back: origin(SurfaceSide::Back, false),
+        shading_normal: point.smooth.map(|smooth| smooth.normal.to_array()),
+        origin_lifted: origin(SurfaceSide::Front, true),
+        origin_lifted_back: origin(SurfaceSide::Back, true),
         is_filled,
         lit: lanes.get(lanes.len() / 2).map(|lane| lane.lit.clone()).unwrap_or_default(),
         lanes: if lanes.len() > 1 { lanes } else { Vec::new() },

@@ -114,13 +114,7 @@ fn truth_at(stage: &Stage, points: &[(usize, [f64; 2])]) -> Vec<Vec<[f64; 2]>> {
     let engine = ExactEngine::new(stage.tracer(), &[path]);
     let surface = |index: usize| {
         let (triangle, weights) = points[index];
-        let instance = stage.geometry.instance[triangle] as usize;
-        SurfacePoint {
-            position_m: stage.geometry.point(triangle, weights),
-            normal: stage.geometry.normal(triangle),
-            is_double_sided: stage.scene.material(instance).is_double_sided,
-            triangle: triangle as u32,
-        }
+        SurfacePoint::of_triangle(&stage.scene, &stage.geometry, triangle, weights)
     };
     let (tables, _) = solve_visibility(&engine, points.len(), surface, |_| true).expect("nothing stops it");
     tables.iter().flat_map(IntervalTable::iter).map(|lit| lit.as_slice().to_vec()).collect()

@@ -96,16 +96,16 @@ impl<'a> Page<'a> {
     }
 
     /// Visibility of the sun by the maps, 0 to 1, and no more than the share of its disc above the surface's plane.
-    /// `geometric_normal` is the unit normal of the triangle, on the side that the eye is on.
-    pub fn sun_visibility(&self, page_uv: Vec2, geometric_normal: Vec3, filter: Filter, moment: &Moment) -> f32 {
+    /// `gate_normal` is that plane's, on the side that the eye is on: [`crate::stage::Stage::gate_normal`].
+    pub fn sun_visibility(&self, page_uv: Vec2, gate_normal: Vec3, filter: Filter, moment: &Moment) -> f32 {
         if self.variant.layer_count() == 0 {
             return 0.0;
         }
         if self.variant.is_point_sun {
-            let is_in_front = geometric_normal.dot(moment.sun_direction) > 0.0;
+            let is_in_front = gate_normal.dot(moment.sun_direction) > 0.0;
             return if is_in_front { self.page_visibility(page_uv, filter, moment) } else { 0.0 };
         }
-        let disc_share = moment.open_visibility(geometric_normal);
+        let disc_share = moment.open_visibility(gate_normal);
         if disc_share <= 0.0 {
             return 0.0;
         }
@@ -117,13 +117,13 @@ impl<'a> Page<'a> {
     pub fn lamp_visibility(
         &self,
         page_uv: Vec2,
-        geometric_normal: Vec3,
+        gate_normal: Vec3,
         to_lamp_m: Vec3,
         filter: Filter,
         lamp: &LampMoment,
     ) -> f32 {
         let Some(layers) = self.maps.lamp.as_ref().filter(|layers| !layers.is_empty()) else { return 0.0 };
-        let sphere_share = lamp.open_visibility(geometric_normal, to_lamp_m);
+        let sphere_share = lamp.open_visibility(gate_normal, to_lamp_m);
         if sphere_share <= 0.0 {
             return 0.0;
         }

@@ -20,6 +20,10 @@ pub struct SurfaceVariant {
     pub has_vertex_color: bool,
     /// It has an alpha mask.
     pub has_alpha_mask: bool,
+    /// Its faces are facets of something smooth: light ends where the shading normal says.
+    pub is_smooth: bool,
+    /// Its vertices say how far that is from the faces, as shadow maps need it.
+    pub has_lift: bool,
     /// What only lit pictures show.
     pub look: LookVariant,
 }
@@ -226,6 +230,7 @@ pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String 
     let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection")].concat();
     push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
     text.push_str(wgsl!("surface/facing"));
+    text.push_str(if surface.is_smooth { wgsl!("surface/gate_smooth") } else { wgsl!("surface/gate_flat") });
     push_evaluation(&mut text, page);
     text
 }

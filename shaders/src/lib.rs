@@ -49,7 +49,8 @@ pub use uniforms::{
     WRAP_CLAMP, WRAP_MIRROR, WRAP_REPEAT,
 };
 pub use vertex::{
-    Attribute, ColorVertex, Format, NormalVertex, PositionVertex, Stream, SurfaceVertex, TextureVertex, attributes,
+    Attribute, ColorVertex, Format, LiftVertex, NormalVertex, PositionVertex, Stream, SurfaceVertex, TextureVertex,
+    attributes,
 };
 pub use volumes::{
     HardLight, VolumeCorners, VolumeLight, VolumeUse, background_shader, hard_light_shader, screen_shader,

@@ -123,7 +123,7 @@ pub fn blur_shader() -> String {
 /// maps.
 pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter, sun: &ShadowSource) -> String {
     let mut text = on_surface(surface, page);
-    push_sun(&mut text, sun);
+    push_sun(&mut text, surface, sun);
     end_of_lit(&mut text, surface.look, page, filter);
     text
 }
@@ -131,12 +131,12 @@ pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Fi
 /// The visibility pass under shadow maps: entry points `surface_vertex` and `visibility_fragment`.
 pub fn mapped_visibility_shader(surface: SurfaceVariant, sun: &ShadowSource) -> String {
     let mut text = on_surface(surface, &PageVariant::default());
-    push_sun(&mut text, sun);
+    push_sun(&mut text, surface, sun);
     text.push_str(wgsl!("surface/visibility_fragment"));
     text
 }
 
-fn push_sun(text: &mut String, sun: &ShadowSource) {
+fn push_sun(text: &mut String, surface: SurfaceVariant, sun: &ShadowSource) {
     match sun {
         ShadowSource::Down => text.push_str(wgsl!("baked/sun_none")),
         ShadowSource::Open => text.push_str(wgsl!("shadow_maps/sun_open")),
@@ -172,6 +172,8 @@ fn push_sun(text: &mut String, sun: &ShadowSource) {
                 ShadowMapChoice::First => wgsl!("shadow_maps/maps_first"),
                 ShadowMapChoice::Blended => wgsl!("shadow_maps/maps_blended"),
             });
+            let has_lift = surface.has_lift;
+            text.push_str(if has_lift { wgsl!("shadow_maps/place_smooth") } else { wgsl!("shadow_maps/place_flat") });
             let is_disc = *filter == ShadowFilter::Penumbra;
             text.push_str(if is_disc { wgsl!("shadow_maps/sun_disc") } else { wgsl!("shadow_maps/sun") });
         }

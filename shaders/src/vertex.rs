@@ -24,6 +24,8 @@ pub enum Stream {
     Normal,
     /// [`TextureVertex`]; only of surfaces with an emissive texture.
     Emissive,
+    /// [`LiftVertex`]; only of facets of something smooth, where shadow maps are read.
+    Lift,
 }
 
 impl Stream {
@@ -35,6 +37,7 @@ impl Stream {
             Self::Texture | Self::MetallicRoughness | Self::Emissive => size_of::<TextureVertex>(),
             Self::Normal => size_of::<NormalVertex>(),
             Self::Color => size_of::<ColorVertex>(),
+            Self::Lift => size_of::<LiftVertex>(),
         };
         bytes as u64
     }
@@ -107,6 +110,21 @@ pub struct ColorVertex {
     pub color: [u16; 4],
 }
 
+/// An entry of [`Stream::Lift`]: how the smooth shape rises above its facet.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LiftVertex {
+    /// The vectors that the triangle's edges bulge by, metres, the same at its three corners: of the edge from its first
+    /// corner to the second,
+    pub first_lift_m: [f32; 3],
+    /// from the second to the third,
+    pub second_lift_m: [f32; 3],
+    /// and from the third to the first.
+    pub third_lift_m: [f32; 3],
+    /// Weights of the second and third corner.
+    pub lift_weights: [f32; 2],
+}
+
 /// One attribute of a vertex; its shader location is its place in [`attributes`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Attribute {
@@ -160,6 +178,14 @@ pub fn attributes(surface: SurfaceVariant) -> Vec<Attribute> {
     if surface.look.has_normal_map {
         texture(Stream::Normal, "normal_uv", "normal_texels_per_metre");
         all.push(make("tangent", Stream::Normal, Format::Snorm16x4, offset_of!(NormalVertex, tangent), false));
+    }
+    if surface.has_lift {
+        let lift = |name, offset| make(name, Stream::Lift, Format::Float3, offset, true);
+        all.push(lift("first_lift_m", offset_of!(LiftVertex, first_lift_m)));
+        all.push(lift("second_lift_m", offset_of!(LiftVertex, second_lift_m)));
+        all.push(lift("third_lift_m", offset_of!(LiftVertex, third_lift_m)));
+        let offset = offset_of!(LiftVertex, lift_weights);
+        all.push(make("lift_weights", Stream::Lift, Format::Float2, offset, false));
     }
     all
 }

@@ -14,11 +14,14 @@ fn validated(text: &str) -> naga::Module {
 }
 
 fn surfaces() -> Vec<SurfaceVariant> {
-    (0..8)
+    // Where nothing is smooth there is no lift.
+    (0..24)
         .map(|bits| SurfaceVariant {
             is_textured: bits & 1 != 0,
             has_vertex_color: bits & 2 != 0,
             has_alpha_mask: bits & 4 != 0,
+            is_smooth: bits >= 8,
+            has_lift: bits >= 16,
             look: LookVariant::default(),
         })
         .collect()

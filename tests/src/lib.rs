@@ -47,14 +47,15 @@ impl Traced {
         Self { scene, geometry, tracer }
     }
 
+    /// The same without regard to shading normals.
+    pub fn faceted(scene: Scene) -> Self {
+        let geometry = Geometry::faceted(&scene);
+        Self { geometry, ..Self::new(scene) }
+    }
+
     /// The point of a triangle (flat index) with these weights of its second and third corner.
     pub fn point(&self, triangle: usize, barycentric: [f64; 2]) -> SurfacePoint {
-        SurfacePoint {
-            position_m: self.geometry.point(triangle, barycentric),
-            normal: self.geometry.normal(triangle),
-            is_double_sided: self.scene.material(self.geometry.instance[triangle] as usize).is_double_sided,
-            triangle: triangle as u32,
-        }
+        SurfacePoint::of_triangle(&self.scene, &self.geometry, triangle, barycentric)
     }
 
     /// A point given in world space, taken to lie on a triangle's plane.
@@ -64,7 +65,7 @@ impl Traced {
 
     /// A point in the air with a plane of its own, given in world space; its rays start as those of a triangle do.
     pub fn observer(&self, world: DVec3, normal: DVec3, triangle: usize) -> SurfacePoint {
-        SurfacePoint { normal, ..self.point_at(world, triangle) }
+        SurfacePoint { normal, smooth: None, ..self.point_at(world, triangle) }
     }
 
     /// When a point sees the sun, by `count` rays and exactly, each with how far off its edges may be in `t`.

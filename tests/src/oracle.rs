@@ -10,13 +10,16 @@
 //! angles; only suns in the window, and not yet dark, are tested. Triangles with wide windows are quartered for
 //! tighter ones. Windows are enlarged by more than rounding, so leaving them out changes no answer.
 //!
+//! On smooth surfaces the side is the shading normal's, blended here from the mesh's own normals, and rays below the
+//! face start where it is projected to: see [`Shape`].
+//!
 //! Departures: the triangle is grown by a part in 10^12, so that no sun slips through a shared edge.
 //!
 //! [`Tracer::lift`]: sunbake::trace::Tracer::lift
 //! [`Tracer::run_up_m`]: sunbake::trace::Tracer::run_up_m
 
 use crate::Traced;
-use glam::{DVec3, Vec2};
+use glam::{DMat3, DVec3, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -83,10 +86,24 @@ impl<'a> Oracle<'a> {
 
     /// For each sun, whether the point sees it.
     pub fn lit(&self, point: &SurfacePoint) -> Vec<bool> {
-        let mut lit = self.seen_from(point, point.normal);
-        if point.is_double_sided {
-            let back = self.seen_from(point, -point.normal);
-            lit.iter_mut().zip(back).for_each(|(lit, back)| *lit |= back);
+        let sides: &[f64] = if point.is_double_sided { &[1.0, -1.0] } else { &[1.0] };
+        let mut lit = vec![false; self.suns.len()];
+        for &sign in sides {
+            let face = point.normal * sign;
+            let start = self.here.tracer.lift(point.position_m, face, point.triangle);
+            let mut seen = vec![self.seen_from(start, face, |sun| sun.dot(face) > 0.0)];
+            if point.smooth.is_some() {
+                let shape = Shape::at(self.here, point);
+                let side = shape.normal * sign;
+                seen = vec![self.seen_from(start, face, |sun| sun.dot(side) > 0.0 && sun.dot(face) > 0.0)];
+                // Where the shape is hollow the face itself is in the way of what is below its plane.
+                let lift = shape.free_lift(self.here, start, face);
+                if lift != DVec3::ZERO {
+                    let below_face = |sun: DVec3| sun.dot(side) > 0.0 && sun.dot(face) < 0.0;
+                    seen.push(self.seen_from(start + lift, side, below_face));
+                }
+            }
+            seen.into_iter().for_each(|seen| lit.iter_mut().zip(seen).for_each(|(lit, seen)| *lit |= seen));
         }
         lit
     }
@@ -96,10 +113,9 @@ impl<'a> Oracle<'a> {
         points.par_iter().map(|point| self.lit(point)).collect()
     }
 
-    /// Suns in front of a side of the surface that nothing hides.
-    fn seen_from(&self, point: &SurfacePoint, side: DVec3) -> Vec<bool> {
-        let mut seen: Vec<bool> = self.suns.iter().map(|sun| sun.y > 0.0 && side.dot(*sun) > 0.0).collect();
-        let origin = self.here.tracer.lift(point.position_m, side, point.triangle);
+    /// Suns that face the surface and that nothing hides from an origin; all of them are in front of the side.
+    fn seen_from(&self, origin: DVec3, side: DVec3, faces: impl Fn(DVec3) -> bool) -> Vec<bool> {
+        let mut seen: Vec<bool> = self.suns.iter().map(|sun| sun.y > 0.0 && faces(*sun)).collect();
         for caster in &self.casters {
             let relative = caster.corners.map(|corner| corner - origin);
             let is_below = |up: DVec3| relative.iter().all(|corner| up.dot(*corner) < -2.0 * self.run_up_m);
@@ -132,6 +148,64 @@ impl<'a> Oracle<'a> {
         }
         windows
     }
+}
+
+/// The smooth shape at a point, by projecting the point onto the tangent planes of an edge's ends (Hanika, "Hacking the
+/// shadow terminator", 2021), edge by edge.
+struct Shape {
+    normal: DVec3,
+    corners: [DVec3; 3],
+    normals: [DVec3; 3],
+    weights: [f64; 3],
+}
+
+impl Shape {
+    fn at(here: &Traced, point: &SurfacePoint) -> Self {
+        let Traced { scene, geometry, .. } = here;
+        let surface = geometry.surface(point.triangle as usize);
+        let instance = &scene.instances[surface.instance];
+        let mesh = &scene.meshes[instance.mesh];
+        let own = mesh.normals.as_ref().expect("a smooth surface has normals");
+        let cofactors = DMat3::from_mat4(instance.bake_from_object).inverse().transpose();
+        let vertex = |k: usize| mesh.indices[3 * surface.mesh_triangle + k] as usize;
+        let normals = [0, 1, 2].map(|k| (cofactors * own[vertex(k)].as_dvec3()).normalize());
+        let corners = geometry.triangles[point.triangle as usize].map(|corner| corner.as_dvec3());
+        let weights = weights(&corners, point.position_m);
+        let normal = (normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2]).normalize();
+        Self { normal, corners, normals, weights }
+    }
+
+    /// The way from the point to the shape, but at most half-way to the next triangle.
+    fn free_lift(&self, here: &Traced, start: DVec3, face: DVec3) -> DVec3 {
+        let mut lift = DVec3::ZERO;
+        for [i, k] in [[0, 1], [1, 2], [2, 0]] {
+            // The middle of the edge, projected onto the planes of its ends, rises by a quarter of the edge's share.
+            let middle = 0.5 * (self.corners[i] + self.corners[k]);
+            let projected = [i, k].map(|at| {
+                let (corner, n) = (self.corners[at], self.normals[at]);
+                middle - n * (middle - corner).dot(n)
+            });
+            let rise = 0.5 * (projected[0] + projected[1]) - middle;
+            if rise.dot(face) > 0.0 {
+                lift += rise * (4.0 * self.weights[i] * self.weights[k]);
+            }
+        }
+        let Some(along) = lift.try_normalize() else { return lift };
+        let hits = (0..here.geometry.triangles.len()).filter_map(|triangle| {
+            let corners = here.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
+            met(&corners, start, along)?;
+            let plane = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            here.geometry.is_solid(&here.scene, triangle).then(|| plane.dot(corners[0] - start) / plane.dot(along))
+        });
+        lift * hits.fold(1.0, |share: f64, distance| share.min(0.5 * distance / lift.length()))
+    }
+}
+
+/// The weights of a triangle's corners at a point of it.
+fn weights([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
+    let area = (b - a).cross(c - a);
+    let share = |p: &DVec3, q: &DVec3| (p - point).cross(q - point).dot(area) / area.length_squared();
+    [share(b, c), share(c, a), share(a, b)]
 }
 
 /// What [`Scene::is_solid_at`] says, but in `f64`: in `f32` the borders of a mask's texels are off by up to half a

@@ -66,6 +66,7 @@ fn most_light(stage: &Stage, numbers: &mut Numbers, is_inside: impl Fn(&SurfaceP
                 normal: stage.geometry.normal(triangle),
                 is_double_sided: false,
                 triangle: triangle as u32,
+                smooth: None,
             };
             if !is_inside(&point) {
                 continue;

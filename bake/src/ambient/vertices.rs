@@ -96,14 +96,8 @@ fn corner(
     corner: usize,
 ) -> AmbientPoint {
     let at = |pull: f64| [1, 2].map(|k| if corner == k { 1.0 - pull * 2.0 / 3.0 } else { pull / 3.0 });
-    let instance = geometry.instance[triangle] as usize;
     AmbientPoint {
-        surface: SurfacePoint {
-            position_m: geometry.point(triangle, at(PULL)),
-            normal: geometry.normal(triangle),
-            is_double_sided: scene.material(instance).is_double_sided,
-            triangle: triangle as u32,
-        },
+        surface: SurfacePoint::of_triangle(scene, geometry, triangle, at(PULL)),
         shading_normal: normals.at(scene, geometry, triangle, at(0.0)),
     }
 }

@@ -4,7 +4,7 @@
 //! and `page_uv = layout_uv * scale + offset`. Texel (x, y) of a page of `width` by `height` covers
 //! `[x, x + 1] / width` by `[y, y + 1] / height`; row 0 is v = 0, the top of the PNG and of a wgpu texture.
 
-use crate::scene::Mesh;
+use crate::scene::{Geometry, Mesh, Scene, SmoothPoint};
 use crate::warning::Warning;
 use glam::{DVec2, DVec3, Vec2};
 
@@ -227,4 +227,19 @@ pub struct SurfacePoint {
     pub is_double_sided: bool,
     /// Flat index of the triangle it lies on.
     pub triangle: u32,
+    /// What shading normals say of it; none on flat triangles.
+    pub smooth: Option<SmoothPoint>,
+}
+
+impl SurfacePoint {
+    /// The point of a triangle with these weights of its second and third corner.
+    pub fn of_triangle(scene: &Scene, geometry: &Geometry, triangle: usize, barycentric: [f64; 2]) -> Self {
+        Self {
+            position_m: geometry.point(triangle, barycentric),
+            normal: geometry.normal(triangle),
+            is_double_sided: scene.material(geometry.instance[triangle] as usize).is_double_sided,
+            triangle: triangle as u32,
+            smooth: geometry.smooth_point(triangle, barycentric),
+        }
+    }
 }

@@ -131,14 +131,7 @@ fn interleaved(x: u32, y: u32) -> u32 {
 
 /// The sample's point in the scene.
 pub fn surface_point(scene: &Scene, geometry: &Geometry, sample: &Sample) -> SurfacePoint {
-    let triangle = sample.triangle as usize;
-    let instance = geometry.instance[triangle] as usize;
-    SurfacePoint {
-        position_m: geometry.point(triangle, sample.barycentric.map(f64::from)),
-        normal: geometry.normal(triangle),
-        is_double_sided: scene.material(instance).is_double_sided,
-        triangle: sample.triangle,
-    }
+    SurfacePoint::of_triangle(scene, geometry, sample.triangle as usize, sample.barycentric.map(f64::from))
 }
 
 /// Triangles of all instances on the page, in the order of their index.

@@ -26,7 +26,7 @@ use crate::lamp::LampPath;
 use crate::maps::Lane;
 use crate::plan::{Effect, LayersNeeded};
 use crate::progress::{BakeStep, Progress};
-use crate::scene::{self, Geometry, Scene, ShadingNormals};
+use crate::scene::{self, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
 use crate::sun::SunPath;
 use crate::trace::Tracer;
@@ -115,7 +115,7 @@ fn bake_prepared(
     warnings.extend(narrow_warning(scene, atlas));
 
     progress.start(BakeStep::Bvh, 0);
-    let geometry = Geometry::new(scene);
+    let geometry = prepared.geometry();
     let tracer = timed(&mut seconds.bvh, || Tracer::new(scene, &geometry));
     let path = path.as_ref().filter(|_| plan.is_on(Effect::SunIntervals));
     let occluders = path.map(|path| occluder_warnings(scene, &geometry, &tracer, path)).unwrap_or_default();

@@ -2,9 +2,9 @@
 
 use super::error::BakeError;
 use crate::lamp::{self, LampPath};
-use crate::plan::{EffectPlan, NoSun};
+use crate::plan::{Effect, EffectPlan, NoSun};
 use crate::progress::{BakeStep, Progress};
-use crate::scene::{self, LoadLimits, Scene, each_once};
+use crate::scene::{self, Geometry, LoadLimits, Scene, each_once};
 use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{self, DayOutcome, SunPath};
 use crate::warning::Warning;
@@ -26,6 +26,16 @@ pub struct Prepared {
     pub warnings: Vec<Warning>,
     /// Seconds that reading the scene took.
     pub(crate) load_seconds: f64,
+}
+
+impl Prepared {
+    /// The scene's triangles, with the smooth shapes of which they are facets if the plan has those.
+    pub(crate) fn geometry(&self) -> Geometry {
+        match self.plan.is_on(Effect::SmoothTerminator) {
+            true => Geometry::new(&self.scene),
+            false => Geometry::faceted(&self.scene),
+        }
+    }
 }
 
 /// Reads the scene and decides what to bake.

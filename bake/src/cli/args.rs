@@ -105,6 +105,12 @@ pub struct BakeArgs {
     /// in minutes.
     #[arg(long)]
     pub loss_map: bool,
+    /// End the light on smooth surfaces face by face, as if they were flat.
+    ///
+    /// By default it ends where shading normals say that a ball of few faces turns away from the light. This is for
+    /// scenes whose normals are not to be trusted, and for checks by ray tracers that know faces alone.
+    #[arg(long)]
+    pub flat_terminator: bool,
     /// Print what would be baked, why, at what cost and what would change that, and bake nothing.
     #[arg(long)]
     pub explain: bool,

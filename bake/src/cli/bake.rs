@@ -92,6 +92,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
+        smooth_terminator: !args.flat_terminator,
         bakes_intervals,
         ambient: ambient(args, preset.ambient)?,
         loss_map: args.loss_map,
@@ -141,6 +142,7 @@ fn times_flag(args: &BakeArgs) -> Option<&'static str> {
         ("--lanes", cost.lanes > 1),
         ("--engine", cost.engine.is_some()),
         ("--edge-seconds", cost.edge_seconds.is_some()),
+        ("--flat-terminator", args.flat_terminator),
         ("--loss-map", args.loss_map),
     ];
     flags.into_iter().find(|(_, is_given)| *is_given).map(|(flag, _)| flag)

@@ -33,7 +33,8 @@ fn summer_path() -> SunPath {
 /// Minutes of error at a point amid four texels with these times, given the true times.
 fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
     let path = summer_path();
-    let surface = SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0 };
+    let surface =
+        SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0, smooth: None };
     let place = SurfaceSample { surface, barycentric: [0.3; 2], is_back: false, start: 0.37, shading_normal: DVec3::Y };
     let lit = Intervals::from_unsorted(truth.to_vec());
     let sun = disc_visibility(&[lit], &[Lane::CENTRE], &path, place.start);

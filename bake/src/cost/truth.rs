@@ -100,16 +100,9 @@ fn draw(workload: &Workload, count: usize) -> Vec<SurfaceSample> {
 
 fn place_at(workload: &Workload, triangle: u32, barycentric: [f64; 2], is_back: bool, start: f64) -> SurfaceSample {
     let geometry = &workload.geometry;
-    let instance = geometry.instance[triangle as usize] as usize;
-    let is_double_sided = workload.scene().material(instance).is_double_sided;
-    let surface = SurfacePoint {
-        position_m: geometry.point(triangle as usize, barycentric),
-        normal: geometry.normal(triangle as usize),
-        is_double_sided,
-        triangle,
-    };
+    let surface = SurfacePoint::of_triangle(workload.scene(), geometry, triangle as usize, barycentric);
     let shading_normal = workload.shading_normal(triangle, barycentric);
-    SurfaceSample { surface, barycentric, is_back: is_back && is_double_sided, start, shading_normal }
+    SurfaceSample { surface, barycentric, is_back: is_back && surface.is_double_sided, start, shading_normal }
 }
 
 /// Ambient visibility of each point, and whether it lies inside a solid.

@@ -62,7 +62,7 @@ impl Workload {
         let (atlas, asked) = pool.install(|| fitting_atlas(&prepared.scene, &asked, &mut warnings, budget))?;
         warnings.extend(atlas.warnings.iter().cloned());
         budget.start(BakeStep::Bvh, 0);
-        let geometry = Geometry::new(&prepared.scene);
+        let geometry = prepared.geometry();
         let tracer = pool.install(|| Tracer::new(&prepared.scene, &geometry));
         let fixed_s = started.elapsed().as_secs_f64();
         if atlas.pages.is_empty() {

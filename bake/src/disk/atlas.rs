@@ -1,8 +1,8 @@
 //! A baked set's scene and atlas: placements from its manifest, texture coordinates from its scene.
 
-use super::manifest::{InstanceEntry, Manifest};
+use super::manifest::{InstanceEntry, Manifest, SMOOTH_TERMINATOR};
 use crate::atlas::{Atlas, Layout, PageSize, Placement};
-use crate::scene::{Instance, Role, Scene};
+use crate::scene::{Geometry, Instance, Role, Scene};
 use glam::Vec2;
 use std::collections::HashMap;
 
@@ -29,6 +29,19 @@ impl Manifest {
             left_out.extend((!is_there).then_some(index));
         }
         scene.turn_into_air(&left_out);
+    }
+
+    /// The triangles of the set's scene, as the set was baked: with or without the smooth shapes of which they are facets.
+    pub fn geometry(&self, scene: &Scene) -> Geometry {
+        match self.has_effect(SMOOTH_TERMINATOR) {
+            true => Geometry::new(scene),
+            false => Geometry::faceted(scene),
+        }
+    }
+
+    /// Whether an effect was baked, by its name. Sets that are older than the effect do not have it.
+    pub fn has_effect(&self, name: &str) -> bool {
+        self.effects.iter().any(|entry| entry.on && entry.effect == name)
     }
 
     /// The atlas for the set's scene.

@@ -340,6 +340,9 @@ fn is_true(value: &bool) -> bool {
     *value
 }
 
+/// Name of the effect that players have to know of: light ends on smooth surfaces where their shading normals say.
+pub const SMOOTH_TERMINATOR: &str = "smooth-terminator";
+
 /// One effect: on or off, and why. Cost and toggle are text for people; older sets lack them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectEntry {

@@ -13,7 +13,7 @@ mod wording;
 
 pub use columns::{in_words, labelled};
 
-use crate::disk::manifest::EffectEntry;
+use crate::disk::manifest::{EffectEntry, SMOOTH_TERMINATOR};
 use crate::lamp::LampPath;
 use crate::maps::Bits;
 use crate::scene::Scene;
@@ -41,6 +41,8 @@ pub enum Effect {
     AlphaMask,
     /// Surfaces that are lit from both sides.
     DoubleSided,
+    /// Light that ends on smooth surfaces where their shading normals say.
+    SmoothTerminator,
     /// Walls between neighbouring texels, which filters must not blend across.
     Walls,
     /// Share of the sky that texels see.
@@ -71,6 +73,7 @@ impl Effect {
             // Sets are read by this name: the word is older than the variant's.
             Self::AlphaMask => "alpha-cut",
             Self::DoubleSided => "double-sided",
+            Self::SmoothTerminator => SMOOTH_TERMINATOR,
             Self::Walls => "walls",
             Self::AmbientOcclusion => "ambient-occlusion",
             Self::AmbientDistance => "ambient-distance",
@@ -160,6 +163,15 @@ pub enum Facts {
         /// Number of triangles of these surfaces.
         triangles: usize,
     },
+    /// Smooth surfaces.
+    Smooth {
+        /// Whether light is to end where their normals say.
+        is_asked: bool,
+        /// Whether times are stored.
+        has_times: bool,
+        /// How many triangles are facets of something smooth.
+        triangles: usize,
+    },
     /// Walls between neighbouring texels.
     Walls {
         /// Pages with walls, of how many; known after the bake.
@@ -211,9 +223,11 @@ impl EffectPlan {
         let is_asked = settings.bakes_intervals;
         let path = path.filter(|_| is_asked);
         let no_sun = if is_asked { no_sun } else { NoSun::NotAsked };
+        let has_times = path.is_some() || lamp.is_some();
         let of_times = times::Times { path, lamp, settings, no_sun }.decisions();
+        let of_surfaces = surfaces::decisions(scene, settings.smooth_terminator, has_times);
         let of_ambient = ambient::decisions(settings.ambient);
-        Self { decisions: of_times.into_iter().chain(surfaces::decisions(scene)).chain(of_ambient).collect() }
+        Self { decisions: of_times.into_iter().chain(of_surfaces).chain(of_ambient).collect() }
     }
 
     /// How many lanes the bake has, of as many as were asked for.

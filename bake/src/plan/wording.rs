@@ -46,6 +46,10 @@ fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
             format!("{surfaces} drawn surfaces have an alpha mask")
         }
         Facts::Surfaces { surfaces, .. } => format!("{surfaces} drawn surfaces are double-sided"),
+        Facts::Smooth { is_asked: false, .. } => "--flat-terminator: light ends face by face".into(),
+        Facts::Smooth { has_times: false, .. } => "no times are stored".into(),
+        Facts::Smooth { triangles: 0, .. } => "no surface of several faces is smooth-shaded".into(),
+        Facts::Smooth { triangles, .. } => format!("{triangles} triangles are facets of smooth-shaded surfaces"),
         Facts::Walls { pages: None } => "wherever a wall stands between neighbouring texels".into(),
         Facts::Walls { pages: Some([0, all]) } => format!("no wall stands between texels of {all} pages"),
         Facts::Walls { pages: Some([walled, all]) } => {
@@ -151,6 +155,7 @@ fn cost(effect: Effect, is_on: bool, facts: Facts) -> String {
             "times serve both sides; ambient light takes rays and bytes for a second side{}",
             if triangles > 0 { format!(" of {triangles} triangles") } else { String::new() }
         ),
+        Facts::Smooth { .. } => "a short ray and a second query a texel of such a surface".into(),
         Facts::Walls { .. } => "two rays a texel, twelve where something is in the way, and 2 bytes".into(),
         Facts::Ambient(request) => ambient_cost(effect, request.as_ref()),
     }
@@ -227,6 +232,10 @@ fn toggled_by(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Losses { is_asked: true, .. } => "leaving --loss-map out",
         Facts::Losses { is_asked: false, .. } => "--loss-map",
         Facts::Surfaces { surfaces, .. } => return surface_toggle(effect, surfaces).into(),
+        Facts::Smooth { .. } if is_on => "--flat-terminator",
+        Facts::Smooth { is_asked: false, .. } => "leaving --flat-terminator out",
+        Facts::Smooth { has_times: false, .. } => "times to store",
+        Facts::Smooth { .. } => "vertex normals that turn from corner to corner of a triangle",
         Facts::Walls { .. } if is_on => "a scene without walls higher than a texel is wide",
         Facts::Walls { .. } => "walls on floors that run on behind them",
         Facts::Ambient(request) => return ambient_toggle(effect, is_on, request.is_some()),

@@ -5,6 +5,7 @@
 //! tracer. The doc of [`crate::scene`] explains the spaces.
 
 use super::Scene;
+use super::smooth::{self, SmoothPoint, SmoothTriangles};
 use glam::{DVec3, Vec3};
 
 /// Flattened triangles of a scene, in the order of its instances.
@@ -18,6 +19,8 @@ pub struct Geometry {
     pub instance: Vec<u32>,
     /// For each instance, the sign that turns the corners' cross product to the front: -1 if the instance is mirrored.
     front_sign: Vec<f64>,
+    /// Corner normals of triangles that are facets of something smooth.
+    smooth: SmoothTriangles,
 }
 
 /// A triangle found by its index.
@@ -30,15 +33,23 @@ pub struct SurfaceTriangle {
 }
 
 impl Geometry {
-    /// Transforms every instance. Triangles of [`Alpha::Invisible`](super::Alpha::Invisible) surfaces are kept, so that indices stay aligned
-    /// with the scene; [`Geometry::is_there`] tells them apart.
+    /// Transforms every instance, and finds what is smooth: see [`SmoothPoint`]. Triangles of
+    /// [`Alpha::Invisible`](super::Alpha::Invisible) surfaces are kept, so that indices stay aligned with the scene;
+    /// [`Geometry::is_there`] tells them apart.
     pub fn new(scene: &Scene) -> Self {
+        let faceted = Self::faceted(scene);
+        Self { smooth: SmoothTriangles::of(scene, &faceted), ..faceted }
+    }
+
+    /// The same without regard to shading normals: every triangle is flat.
+    pub fn faceted(scene: &Scene) -> Self {
         let count = scene.triangle_count();
         let mut geometry = Self {
             triangles: Vec::with_capacity(count),
             first_triangle: Vec::with_capacity(scene.instances.len() + 1),
             instance: Vec::with_capacity(count),
             front_sign: Vec::with_capacity(scene.instances.len()),
+            smooth: SmoothTriangles::default(),
         };
         for (index, instance) in scene.instances.iter().enumerate() {
             geometry.first_triangle.push(geometry.triangles.len() as u32);
@@ -75,6 +86,36 @@ impl Geometry {
     pub fn point(&self, triangle: usize, [u, v]: [f64; 2]) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|p| p.as_dvec3());
         a * (1.0 - u - v) + b * u + c * v
+    }
+
+    /// How many triangles are facets of something smooth.
+    pub fn smooth_count(&self) -> usize {
+        self.smooth.count()
+    }
+
+    /// Whether a triangle is a facet of something smooth.
+    pub fn is_smooth(&self, triangle: usize) -> bool {
+        self.smooth.normals(triangle).is_some()
+    }
+
+    /// What shading normals say of a point (weights of its triangle's second and third corner); none where the triangle
+    /// is flat.
+    pub fn smooth_point(&self, triangle: usize, [u, v]: [f64; 2]) -> Option<SmoothPoint> {
+        let [a, b, c] = self.smooth.normals(triangle)?;
+        let face = self.normal(triangle);
+        let lifts = self.edge_lifts_m(triangle)?;
+        Some(SmoothPoint {
+            normal: (a * (1.0 - u - v) + b * u + c * v).normalize_or(face),
+            lift_m: [face, -face].map(|side| smooth::lift(&lifts, [u, v], side)),
+        })
+    }
+
+    /// For the edges of a smooth triangle, from each corner to the next, the vector that its bulge is made of:
+    /// a point with weights a, b and c moves by `ab` times the first, `bc` times the second and `ca` times the third, of
+    /// those that point to the side that is seen.
+    pub fn edge_lifts_m(&self, triangle: usize) -> Option<[DVec3; 3]> {
+        let normals = self.smooth.normals(triangle)?;
+        Some(smooth::edge_lifts(&self.triangles[triangle].map(|corner| corner.as_dvec3()), &normals))
     }
 
     /// Whether the triangle can be seen: its instance is there, and its corners do not coincide.

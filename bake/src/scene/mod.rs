@@ -49,6 +49,7 @@ mod refuse;
 mod resources;
 mod roles;
 mod shading;
+mod smooth;
 #[cfg(test)]
 mod tests;
 mod triangles;
@@ -68,6 +69,7 @@ pub use resources::sha256;
 pub use roles::Role;
 pub(crate) use roles::is_density;
 pub use shading::ShadingNormals;
+pub use smooth::SmoothPoint;
 
 /// A scene read from glTF, checked: every index is in range, every number finite, every mesh drawn by some instance.
 ///

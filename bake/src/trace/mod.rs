@@ -14,7 +14,8 @@
 //!
 //! # Where shadow rays start
 //!
-//! Three offsets decide what a surface hides from itself and its neighbours:
+//! Three offsets decide what a surface hides from itself and its neighbours (and smooth surfaces have a fourth,
+//! [`Tracer::lift_smooth`]):
 //!
 //! * The **lift** ([`Tracer::lift`]) moves the origin off the surface along its normal, by a few rounding steps of the
 //!   surface's coordinates.
@@ -121,6 +122,39 @@ impl Tracer {
         let lift_m = self.lift_m[self.instance[triangle] as usize];
         let inwards = self.centroid_m[triangle].as_dvec3() - point_m;
         point_m + side * lift_m + inwards.clamp_length_max(lift_m)
+    }
+
+    /// The origin of a shadow ray from a point that shading normals move by `lift_m`: see [`crate::scene::SmoothPoint`].
+    pub fn lift_smooth(&self, point_m: DVec3, side: DVec3, triangle: u32, lift_m: DVec3) -> DVec3 {
+        self.lift(point_m, side, triangle) + lift_m * self.free_share(point_m, side, triangle, lift_m)
+    }
+
+    /// How much of a lift a point may rise, from 0 to 1: half-way to the next surface at most, so that no light comes
+    /// through walls, or from below what lies on the point.
+    pub fn free_share(&self, point_m: DVec3, side: DVec3, triangle: u32, lift_m: DVec3) -> f64 {
+        let length_m = lift_m.length();
+        let Some(along) = lift_m.try_normalize() else { return 0.0 };
+        let start_m = self.lift(point_m, side, triangle);
+        let free_m = self.nearest_within(start_m, &Direction::new(along), 2.0 * length_m);
+        free_m.map_or(1.0, |free_m| (0.5 * free_m / length_m).min(1.0))
+    }
+
+    /// Distance of the nearest surface along the direction, if there is one within reach.
+    fn nearest_within(&self, origin_m: DVec3, direction: &Direction, reach_m: f64) -> Option<f64> {
+        let origin = origin_m * self.tracer_from_bake;
+        let mut nearest = reach_m * self.tracer_from_bake;
+        let mut found = false;
+        // The traversal is in `f32`: the margin is more than its rounding.
+        let far = |distance: f64| (distance * (1.0 + 1e-6)) as f32;
+        let ray = Ray { tmax: far(nearest), ..ray(origin, direction) };
+        self.bvh.ray_traverse(ray, &mut RayHit::none(), |_, id| match self.intersect(origin, direction, id) {
+            Some((distance, _)) if distance <= nearest => {
+                (nearest, found) = (distance, true);
+                far(distance)
+            }
+            _ => f32::INFINITY,
+        });
+        found.then_some(nearest / self.tracer_from_bake)
     }
 
     /// Corners in tracer space of every triangle that blocks light. An [`Occluder`] holds an index into this.

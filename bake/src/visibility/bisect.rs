@@ -14,7 +14,8 @@
 //! `1/(N - 1)` of the path may be missed; and of three changes between two positions one is found. Edges that are found
 //! are off by at most `edge_seconds`.
 
-use super::probe::{Probe, SurfaceSide};
+use super::probe::Probe;
+use super::start::SurfaceSide;
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
@@ -63,16 +64,21 @@ impl BisectLane {
         }
     }
 
-    /// Spans in which the sun is above the horizon and in front of a side of the point, with that side.
-    fn spans(&self, point: &SurfacePoint) -> Vec<([f64; 2], SurfaceSide)> {
+    /// Spans in which the sun is above the horizon and in front of a start of the point, with that start. Starts that
+    /// share a plane share the ends of their spans to the last bit.
+    fn spans(&self, point: &SurfacePoint, probe: &Probe) -> Vec<([f64; 2], usize)> {
         let in_front = self.path.above_plane(point.normal);
-        let of_side = |when: &Intervals, side| {
+        let in_shading = point.smooth.map(|smooth| self.path.above_plane(smooth.normal));
+        let mut spans = Vec::new();
+        for (index, start) in probe.starts().enumerate() {
+            let of_side = |when: &Intervals, is_in_front: bool| if is_in_front { when.clone() } else { gaps(when) };
+            let is_front = start.side == SurfaceSide::Front;
+            let mut when = of_side(&in_front, is_front != start.is_lifted());
+            if let Some(in_shading) = &in_shading {
+                when = when.intersection(&of_side(in_shading, is_front));
+            }
             let up = when.intersection(&self.above_horizon);
-            up.as_slice().iter().map(|&span| (span, side)).collect::<Vec<_>>()
-        };
-        let mut spans = of_side(&in_front, SurfaceSide::Front);
-        if point.is_double_sided {
-            spans.extend(of_side(&gaps(&in_front), SurfaceSide::Back));
+            spans.extend(up.as_slice().iter().map(|&span| (span, index)));
         }
         spans
     }
@@ -125,7 +131,7 @@ impl Session for BisectSession<'_> {
             let probe = Probe::new(engine.tracer, point);
             for (lane, last_occluder) in engine.lanes.iter().zip(&mut self.last_occluder) {
                 let mut search = Search { lane, probe: &probe, last_occluder, rays: &mut self.rays, lit: Vec::new() };
-                lane.spans(point).into_iter().for_each(|(span, side)| search.span(span, side));
+                lane.spans(point, &probe).into_iter().for_each(|(span, start)| search.span(span, start));
                 answers.push(&Intervals::from_unsorted(search.lit));
             }
         }
@@ -160,49 +166,49 @@ impl Sample {
 
 impl Search<'_> {
     /// Finds the lit intervals within a span.
-    fn span(&mut self, [first_t, last_t]: [f64; 2], side: SurfaceSide) {
+    fn span(&mut self, [first_t, last_t]: [f64; 2], start: usize) {
         let step_t = self.lane.step_t();
         let inside = (first_t / step_t) as usize + 1..(last_t / step_t).ceil() as usize;
         let first_sun = self.lane.path.direction(first_t);
-        let mut before = self.end(first_t, first_sun, side, None);
+        let mut before = self.end(first_t, first_sun, start, None);
         let mut lit_since = before.is_lit().then_some(first_t);
         for step in inside {
-            let now = self.coarse(step, side, before.occluder);
-            lit_since = self.advance(before, now, lit_since, side);
+            let now = self.coarse(step, start, before.occluder);
+            lit_since = self.advance(before, now, lit_since, start);
             before = now;
         }
-        let end = self.end(last_t, self.lane.direction_until(last_t), side, before.occluder);
-        let lit_since = self.advance(before, end, lit_since, side);
+        let end = self.end(last_t, self.lane.direction_until(last_t), start, before.occluder);
+        let lit_since = self.advance(before, end, lit_since, start);
         self.lit.extend(lit_since.map(|since| [since, last_t]));
     }
 
     /// From one moment to the next: adds the lit interval that ended between them, and gives the start of the current
     /// one.
-    fn advance(&mut self, before: Sample, now: Sample, lit_since: Option<f64>, side: SurfaceSide) -> Option<f64> {
+    fn advance(&mut self, before: Sample, now: Sample, lit_since: Option<f64>, start: usize) -> Option<f64> {
         if before.is_lit() == now.is_lit() {
             return lit_since;
         }
-        let edge_t = self.edge_t(before, now, side);
+        let edge_t = self.edge_t(before, now, start);
         self.lit.extend(lit_since.map(|since| [since, edge_t]));
         now.is_lit().then_some(edge_t)
     }
 
     /// The edge between a moment that is lit and one that is not.
-    fn edge_t(&mut self, mut low: Sample, mut high: Sample, side: SurfaceSide) -> f64 {
+    fn edge_t(&mut self, mut low: Sample, mut high: Sample, start: usize) -> f64 {
         while high.t - low.t > self.lane.edge_width_t {
             let t = 0.5 * (low.t + high.t);
             let sun = Direction::new(self.lane.path.direction(t));
-            let middle = self.trace(t, side, &sun, [low.occluder.or(high.occluder), None]);
+            let middle = self.trace(t, start, &sun, [low.occluder.or(high.occluder), None]);
             let end = if middle.is_lit() == low.is_lit() { &mut low } else { &mut high };
             *end = middle;
         }
         0.5 * (low.t + high.t)
     }
 
-    fn coarse(&mut self, step: usize, side: SurfaceSide, before: Option<Occluder>) -> Sample {
+    fn coarse(&mut self, step: usize, start: usize, before: Option<Occluder>) -> Sample {
         let lane = self.lane;
         let sample =
-            self.trace(step as f64 * lane.step_t(), side, &lane.suns[step], [self.last_occluder[step], before]);
+            self.trace(step as f64 * lane.step_t(), start, &lane.suns[step], [self.last_occluder[step], before]);
         if !sample.is_lit() {
             self.last_occluder[step] = sample.occluder;
         }
@@ -210,14 +216,14 @@ impl Search<'_> {
     }
 
     /// The end of a span. It uses the last occluder of the coarse position next to it.
-    fn end(&mut self, t: f64, sun: DVec3, side: SurfaceSide, before: Option<Occluder>) -> Sample {
+    fn end(&mut self, t: f64, sun: DVec3, start: usize, before: Option<Occluder>) -> Sample {
         let sun = Direction::new(sun);
         let beside = (t / self.lane.step_t()).round() as usize;
-        self.trace(t, side, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
+        self.trace(t, start, &sun, [self.last_occluder[beside.min(self.last_occluder.len() - 1)], before])
     }
 
-    fn trace(&mut self, t: f64, side: SurfaceSide, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Sample {
+    fn trace(&mut self, t: f64, start: usize, sun: &Direction, guesses: [Option<Occluder>; 2]) -> Sample {
         *self.rays += 1;
-        Sample { t, occluder: self.probe.occluder(side, sun, guesses) }
+        Sample { t, occluder: self.probe.occluder(start, sun, guesses) }
     }
 }

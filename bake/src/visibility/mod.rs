@@ -3,7 +3,7 @@
 //! `V(x, t)` is 1 where the sun's centre is above the world horizon, above the surface's plane, and not occluded. An
 //! [`Engine`] finds all lit intervals of a point at once. For a double-sided surface, rays start on the side that faces
 //! the sun. So one list serves both of its faces: at any moment the sun is in front of exactly one of them, and the
-//! runtime knows which.
+//! runtime knows which. On smooth surfaces the shading normal says in front of which (`start.rs`).
 
 mod bisect;
 mod buried;
@@ -11,6 +11,7 @@ mod exact;
 mod lamp;
 mod probe;
 mod rays;
+mod start;
 
 pub use crate::intervals::{IntervalTable, Intervals};
 pub use bisect::BisectEngine;
@@ -18,6 +19,7 @@ pub(crate) use buried::{Answers, BuriedPoints, fill_buried};
 pub use exact::ExactEngine;
 pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;
+pub use start::{RayStart, SurfaceSide, ray_starts};
 
 use crate::atlas::SurfacePoint;
 use rayon::prelude::*;

@@ -11,7 +11,7 @@
 //! second makes scenes full of shade faster (littlest_tokyo by 3.5 times, two_cylinder_engine by 2.1) and leaves those
 //! with open ground as they were (gas_station, truck_town). The other order makes no measurable difference.
 
-use super::probe::{Probe, side_towards};
+use super::probe::Probe;
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
@@ -61,7 +61,7 @@ impl Session for RaySession<'_> {
         for point in points {
             let probe = Probe::new(self.engine.tracer, point);
             for lane in 0..self.engine.suns.len() {
-                answers.push(&self.lit_along(lane, point, &probe));
+                answers.push(&self.lit_along(lane, &probe));
             }
         }
     }
@@ -72,13 +72,13 @@ impl Session for RaySession<'_> {
 }
 
 impl RaySession<'_> {
-    fn lit_along(&mut self, lane: usize, point: &SurfacePoint, probe: &Probe) -> Intervals {
+    fn lit_along(&mut self, lane: usize, probe: &Probe) -> Intervals {
         let count = self.engine.suns[lane].len();
         let mut lit = Vec::new();
         let mut start = None;
         let mut before = None;
         for step in 0..count {
-            match (self.is_lit(lane, point, probe, step, &mut before), start) {
+            match (self.is_lit(lane, probe, step, &mut before), start) {
                 (true, None) => start = Some(step),
                 (false, Some(first)) => {
                     lit.push([first as f64 / count as f64, step as f64 / count as f64]);
@@ -92,19 +92,12 @@ impl RaySession<'_> {
     }
 
     /// `before` is the occluder of the previous position of the sun; it becomes that of this one.
-    fn is_lit(
-        &mut self,
-        lane: usize,
-        point: &SurfacePoint,
-        probe: &Probe,
-        step: usize,
-        before: &mut Option<Occluder>,
-    ) -> bool {
+    fn is_lit(&mut self, lane: usize, probe: &Probe, step: usize, before: &mut Option<Occluder>) -> bool {
         let Some(sun) = &self.engine.suns[lane][step] else { return false };
-        let Some(side) = side_towards(point, sun.unit()) else { return false };
+        let Some(start) = probe.start_towards(sun.unit()) else { return false };
         self.work.rays += 1;
         let last = &mut self.last_occluder[lane][step];
-        let occluder = probe.occluder(side, sun, [*last, *before]);
+        let occluder = probe.occluder(start, sun, [*last, *before]);
         *before = occluder;
         *last = occluder.or(*last);
         occluder.is_none()

@@ -43,13 +43,7 @@ impl Here {
 
     /// A point of a triangle.
     pub fn point(&self, triangle: usize, barycentric: [f64; 2]) -> SurfacePoint {
-        let instance = self.geometry.instance[triangle] as usize;
-        SurfacePoint {
-            position_m: self.geometry.point(triangle, barycentric),
-            normal: self.geometry.normal(triangle),
-            is_double_sided: self.scene.material(instance).is_double_sided,
-            triangle: triangle as u32,
-        }
+        SurfacePoint::of_triangle(&self.scene, &self.geometry, triangle, barycentric)
     }
 
     /// A few points of each triangle of the first `triangles`.

@@ -137,6 +137,8 @@ struct ReceiverPoint<'a> {
     point_m: DVec3,
     /// Unit normal on the side that the eye is on.
     geometric_normal: DVec3,
+    /// The normal that decides whether the point faces the light, on the same side.
+    gate_normal: DVec3,
     /// Unit vector to the sun.
     sun: DVec3,
     /// Unit vectors across the light.
@@ -154,6 +156,7 @@ impl<'a> ReceiverPoint<'a> {
             shot,
             triangle: hit.triangle,
             point_m: geometry.point(hit.triangle as usize, hit.barycentric),
+            gate_normal: shot.stage.gate_normal(hit.triangle as usize, hit.barycentric, shot.ray(pixel)).as_dvec3(),
             geometric_normal: if front.dot(shot.ray(pixel).as_dvec3()) > 0.0 { -front } else { front },
             sun,
             aside: sun.any_orthonormal_pair().into(),
@@ -163,7 +166,11 @@ impl<'a> ReceiverPoint<'a> {
 
     /// Whether truth has no edge within reach.
     fn is_uniform(&self, is_lit: bool, reach_m: f64) -> bool {
-        let facing = self.geometric_normal.dot(self.sun);
+        let facing = self.gate_normal.dot(self.sun);
+        if facing > 0.0 && self.geometric_normal.dot(self.sun) <= 0.0 {
+            // The edge of the light crosses the facet.
+            return false;
+        }
         if facing <= 0.0 {
             // Turned away from the light: dark whatever is near, unless the disc's rim may just reach it.
             return !is_lit && facing < -self.spread;

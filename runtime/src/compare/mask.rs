@@ -1,17 +1,22 @@
 //! How far a hard mask agrees with hard truth.
 //!
-//! Both test one point per pixel, and say lit or shaded. Where they differ, that is a defect, unless one of three
-//! things explains it that no rasterising technique can avoid. Each is counted apart:
+//! Both test one point per pixel, and say lit or shaded. Where they differ, that is a defect, unless one of these
+//! things explains it. Each is counted apart:
 //!
 //! * **The band.** The pixel lies within one pixel of an edge in truth's picture.
 //! * **Fine edges.** Truth itself changes within a fraction of a pixel ([`FINE_PX`]): at an edge of something too thin
 //!   for the picture to show, or between surfaces closer together than that along the line of sight.
 //! * **Other surfaces.** Rasterising shows another surface than a ray hits (at a silhouette, or through a crack between
 //!   triangles that do not share their corners), and the mask is right about that surface.
+//! * **Turned facets.** A smooth surface faces the light there and its facet does not. Rays start above the facet, where
+//!   a technique that rasterises may not: shadow volumes of open meshes leave it dark.
+//!
+//! The first three no rasterising technique can avoid.
 
 use super::agreement::neighbours;
 use crate::image::Raster;
 use crate::light::Moment;
+use crate::shade::towards_eye;
 use crate::shot::Shot;
 use crate::technique::{LightKind, Truth};
 use crate::volumes::nearest::nearest;
@@ -45,6 +50,8 @@ pub struct MaskAgreement {
     pub at_fine_edges: usize,
     /// Wrong pixels outside of the band that show another surface, and are right about it.
     pub of_other_surfaces: usize,
+    /// Wrong pixels outside of the band, on facets that turn away from the light where their smooth surface does not.
+    pub on_turned_facets: usize,
     /// Other wrong pixels: indices in row order.
     pub unexplained: Vec<usize>,
 }
@@ -74,6 +81,8 @@ impl MaskAgreement {
                 found.unexplained.push(i);
             } else if is_edge {
                 found.wrong_in_band += 1;
+            } else if reasons.is_on_turned_facet(i) {
+                found.on_turned_facets += 1;
             } else if reasons.is_at_fine_edge(i, is_lit) || (!is_lit && reasons.grazes_a_caster(i)) {
                 found.at_fine_edges += 1;
             } else if reasons.shows_other_surface(i, is_lit, f64::from(depth_m)) {
@@ -89,12 +98,13 @@ impl MaskAgreement {
     pub fn sentence(&self) -> String {
         format!(
             "{} pixels compared, {} in the band ({} wrong there); elsewhere wrong: {} at fine edges, {} of other \
-             surfaces, {} unexplained",
+             surfaces, {} on turned facets, {} unexplained",
             self.pixels,
             self.in_band,
             self.wrong_in_band,
             self.at_fine_edges,
             self.of_other_surfaces,
+            self.on_turned_facets,
             self.unexplained.len()
         )
     }
@@ -106,6 +116,7 @@ impl MaskAgreement {
         self.wrong_in_band += other.wrong_in_band;
         self.at_fine_edges += other.at_fine_edges;
         self.of_other_surfaces += other.of_other_surfaces;
+        self.on_turned_facets += other.on_turned_facets;
         self.unexplained.extend(&other.unexplained);
     }
 }
@@ -126,6 +137,22 @@ impl Reasons<'_> {
             let reach_px = [FINE_PX / 16.0, FINE_PX / 4.0, FINE_PX][i / RAYS_PER_CIRCLE];
             centre + (view.ray_per_column * cos + view.ray_per_row * sin) * reach_px
         }))
+    }
+
+    /// Whether a pixel's smooth surface faces the light, and its facet does not.
+    fn is_on_turned_facet(&self, pixel: usize) -> bool {
+        let stage = self.shot.stage;
+        let Some(hit) = self.shot.hits()[pixel] else { return false };
+        let (triangle, ray) = (hit.triangle as usize, self.shot.ray(pixel));
+        let face = stage.geometry.normal(triangle).as_vec3();
+        let gate = stage.gate_normal(triangle, hit.barycentric, ray);
+        let to_light = match (self.light, &self.moment.lamp) {
+            (LightKind::Lamp, Some(lamp)) => {
+                lamp.position_m - stage.geometry.point(triangle, hit.barycentric).as_vec3()
+            }
+            _ => self.moment.sun_direction,
+        };
+        gate.dot(to_light) > 0.0 && towards_eye(face, face, ray).dot(to_light) <= 0.0
     }
 
     /// Whether truth equals the mask somewhere within a fraction of a pixel, or a fraction of a pixel before the

@@ -27,6 +27,8 @@ pub enum DrawEffect {
     EmissiveTextures,
     /// Surfaces blended with what lies behind.
     BlendedSurfaces,
+    /// Light that ends on smooth surfaces where their shading normals say.
+    SmoothTerminator,
     /// Stored times of the sun.
     SunTimes,
     /// A sun with a width, which softens edges along its path.
@@ -61,6 +63,8 @@ pub enum DrawEffect {
     ZFail,
     /// Casters that are not closed.
     OpenMeshes,
+    /// Smooth solids, which cast from their back faces.
+    SmoothSolids,
     /// Silhouettes found by the vertex shader.
     SilhouettesByGpu,
     /// Volumes counted in several runs.

@@ -18,6 +18,7 @@ pub mod bias;
 pub mod cascades;
 pub mod extents;
 pub mod ground;
+mod lifts;
 mod map_request;
 pub mod perspective;
 pub mod polyhedron;
@@ -27,6 +28,7 @@ mod warp;
 pub use bias::Bias;
 pub use extents::{Extents, Near, ShadowScene};
 pub use ground::Ground;
+pub use lifts::free_edge_lifts_m;
 pub use projection::{LightAxes, LightBounds, MapProjection};
 
 use crate::{Filter, View};

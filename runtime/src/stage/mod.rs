@@ -10,6 +10,7 @@ pub use read::{MAX_SCENE_BYTES, StageError};
 
 use crate::drawn_sides::{DrawnSides, drawn_sides};
 use crate::light::{LampMoment, Moment};
+use crate::shade::towards_eye;
 use crate::texture::{Encoding, MipChain};
 use glam::{Vec2, Vec3, Vec4};
 use looks::StageLooks;
@@ -179,6 +180,17 @@ impl Stage {
     fn shading_normal(&self, instance: usize, object: Vec3, front: Vec3) -> Vec3 {
         let normal = self.normals.turned(instance, object);
         if normal == glam::DVec3::ZERO { front } else { normal.as_vec3() }
+    }
+
+    /// The normal that decides whether a point of a triangle faces the light, on the side that a ray comes from: the
+    /// shading normal where it is smooth, else the face's.
+    pub fn gate_normal(&self, triangle: usize, barycentric: [f64; 2], ray: Vec3) -> Vec3 {
+        let front = self.geometry.normal(triangle).as_vec3();
+        let gate = match self.geometry.is_smooth(triangle) {
+            true => blend(self.corners(triangle).normal, barycentric.map(|b| b as f32)).normalize_or(front),
+            false => front,
+        };
+        towards_eye(gate, front, ray)
     }
 
     /// Texels of the base colour texture per metre of a triangle. 0 without texture.

@@ -5,7 +5,7 @@ use glam::Vec2;
 use std::collections::HashMap;
 use std::path::Path;
 use sunbake::Bake;
-use sunbake::disk::manifest::InstanceEntry;
+use sunbake::disk::manifest::{InstanceEntry, Manifest};
 use sunbake::maps::{Bits, LaneMaps, PageEncoder, PageMaps};
 use sunbake::scene::{LoadError, LoadLimits, Scene};
 use sunbake::sun::SunPath;
@@ -79,7 +79,7 @@ impl Stage {
         set.manifest.apply_roles(&mut scene);
         scene.file = scene.file.filter(|_| has_looks);
         let stage = Self::new(scene, &set.manifest.instances, set.pages, set.bits, set.path)?;
-        Ok(stage.with_lamp(set.lamp.as_ref()))
+        Ok(stage.with_geometry_of(&set.manifest).with_lamp(set.lamp.as_ref()))
     }
 
     /// A bake that was never written: what [`sunbake::bake_scene`] gives, ready to be drawn.
@@ -87,7 +87,7 @@ impl Stage {
         let scene = bake.scene(&LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
         let pages = bake.pages.into_iter().map(|page| page.maps).collect();
         let stage = Self::new(scene, &bake.manifest.instances, pages, bake.bits.times, bake.path)?;
-        Ok(stage.with_lamp(bake.lamp.as_ref()))
+        Ok(stage.with_geometry_of(&bake.manifest).with_lamp(bake.lamp.as_ref()))
     }
 
     /// A scene for which nothing was baked: it can be drawn and traced, and its maps are empty. It has the looks of its
@@ -97,6 +97,12 @@ impl Stage {
         let charts = vec![Some(chart); scene.instances.len()];
         let page = PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None, walls: None };
         Self::with_charts(scene, charts, vec![page], Bits::Eight, path)
+    }
+
+    /// The stage with light that ends on smooth surfaces as it does in the set.
+    fn with_geometry_of(mut self, manifest: &Manifest) -> Self {
+        self.geometry = manifest.geometry(&self.scene);
+        self
     }
 
     /// Joins a scene with what was baked for it.

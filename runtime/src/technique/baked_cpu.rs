@@ -9,7 +9,6 @@ use crate::image::Raster;
 use crate::light::{LampMoment, Moment};
 use crate::plan::DrawPlan;
 use crate::playback::Page;
-use crate::shade::towards_eye;
 use crate::shot::Shot;
 use crate::stage::Stage;
 use rayon::prelude::*;
@@ -33,18 +32,16 @@ impl<'a> BakedCpu<'a> {
 
     fn lamp_visibility_at(&self, shot: &Shot, pixel: usize, hit: &Hit, lamp: &LampMoment) -> f32 {
         let triangle = hit.triangle as usize;
-        let front = self.stage.geometry.normal(triangle).as_vec3();
-        let geometric_normal = towards_eye(front, front, shot.ray(pixel));
+        let gate_normal = self.stage.gate_normal(triangle, hit.barycentric, shot.ray(pixel));
         let to_lamp_m = lamp.position_m - self.stage.geometry.point(triangle, hit.barycentric).as_vec3();
         let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
-        self.pages[page as usize].lamp_visibility(page_uv, geometric_normal, to_lamp_m, self.filter, lamp)
+        self.pages[page as usize].lamp_visibility(page_uv, gate_normal, to_lamp_m, self.filter, lamp)
     }
 
     fn sun_visibility_at(&self, shot: &Shot, pixel: usize, hit: &Hit, moment: &Moment) -> f32 {
-        let front = self.stage.geometry.normal(hit.triangle as usize).as_vec3();
-        let geometric_normal = towards_eye(front, front, shot.ray(pixel));
         let Some((page, page_uv)) = self.stage.page_uv(hit) else { return 0.0 };
-        self.pages[page as usize].sun_visibility(page_uv, geometric_normal, self.filter, moment)
+        let gate_normal = self.stage.gate_normal(hit.triangle as usize, hit.barycentric, shot.ray(pixel));
+        self.pages[page as usize].sun_visibility(page_uv, gate_normal, self.filter, moment)
     }
 }
 

@@ -17,6 +17,7 @@ pub fn truth(stage: &Stage, rays: Option<u32>) -> DrawPlan {
         need(DrawEffect::TruthOfDisc, rays.is_some()).with(Uncounted::Rays(rays)),
         need(DrawEffect::TracedLamp, stage.lamp.is_some()).with(Uncounted::Rays(rays)),
         need(DrawEffect::TracedAlphaMask, stage.scene.has_alpha_mask()),
+        need(DrawEffect::SmoothTerminator, stage.geometry.smooth_count() > 0),
     ];
     DrawPlan { needs, totals: Census::default(), is_exact: true }
 }

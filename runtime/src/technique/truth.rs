@@ -6,6 +6,8 @@
 //!   each pixel; it gives the share that reaches the sun. Only parts of the disc above the world's horizon and above
 //!   the surface's plane count.
 //!
+//! Where rays start, and what counts as the surface's plane, is as in a bake: [`sunbake::visibility::ray_starts`].
+//!
 //! For a lamp it is the same: one ray to its centre, or many over the disc that its sphere shows to the point. A ray
 //! ends at the lamp.
 //!
@@ -21,8 +23,11 @@ use crate::shot::Shot;
 use crate::stage::Stage;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use sunbake::atlas::SurfacePoint;
+use sunbake::scene::SmoothPoint;
 use sunbake::sun::SunPath;
 use sunbake::trace::{Direction, Hit};
+use sunbake::visibility::{RayStart, ray_starts};
 
 /// How many rays are traced, and to where.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,20 +45,15 @@ impl Truth {
     /// Rays per pixel of soft truth, unless told otherwise.
     pub const DEFAULT_RAYS: u32 = 64;
 
-    fn lamp_visibility_from(
-        self,
-        stage: &Stage,
-        &ShadowRayOrigin { geometric_normal, on_plane_m, point_m, origin_m, is_open }: &ShadowRayOrigin,
-        pixel: usize,
-        lamp: &Sphere,
-    ) -> f32 {
+    fn lamp_visibility_from(self, stage: &Stage, from: &ShadowRays, pixel: usize, lamp: &Sphere) -> f32 {
+        let point_m = from.point.position_m;
         if point_m.distance(lamp.centre_m) > lamp.range_m {
             return 0.0;
         }
         let tracer = stage.tracer();
         let reaches = |lamp_m: DVec3| {
-            geometric_normal.dot(lamp_m - on_plane_m) > 0.0
-                && (is_open || tracer.occluder_before(origin_m, lamp_m).is_none())
+            let origin_m = from.origin_towards(lamp_m);
+            origin_m.is_some_and(|origin_m| from.is_open || tracer.occluder_before(origin_m, lamp_m).is_none())
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(lamp.centre_m))),
@@ -67,29 +67,23 @@ impl Truth {
     /// Visibility of the centre of the sun or of the lamp, 0 or 1, from the point that a ray has hit, moved back along
     /// the ray by `step_m`.
     pub fn hard_at(stage: &Stage, ray: Vec3, hit: &Hit, step_m: f64, moment: &Moment, light: LightKind) -> f32 {
-        let mut point = ShadowRayOrigin::new(stage, ray, hit);
+        let mut from = ShadowRays::new(stage, ray, hit);
         let back_m = ray.as_dvec3().normalize() * step_m;
-        point.point_m -= back_m;
-        point.origin_m -= back_m;
+        from.point.position_m -= back_m;
+        from.starts.iter_mut().for_each(|(_, origin_m)| *origin_m -= back_m);
         match (light, &stage.path, &moment.lamp) {
-            (LightKind::Sun, Some(path), _) => Self::Hard.sun_visibility_from(stage, &point, 0, &sun_of(path, moment)),
-            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_visibility_from(stage, &point, 0, &sphere_of(lamp)),
+            (LightKind::Sun, Some(path), _) => Self::Hard.sun_visibility_from(stage, &from, 0, &sun_of(path, moment)),
+            (LightKind::Lamp, _, Some(lamp)) => Self::Hard.lamp_visibility_from(stage, &from, 0, &sphere_of(lamp)),
             _ => 0.0,
         }
     }
 
-    fn sun_visibility_from(
-        self,
-        stage: &Stage,
-        &ShadowRayOrigin { geometric_normal, origin_m, is_open, .. }: &ShadowRayOrigin,
-        pixel: usize,
-        sun: &SunDisc,
-    ) -> f32 {
+    fn sun_visibility_from(self, stage: &Stage, from: &ShadowRays, pixel: usize, sun: &SunDisc) -> f32 {
         let tracer = stage.tracer();
+        let is_hidden = |origin_m, direction| tracer.is_occluded(origin_m, &Direction::new(direction));
         let reaches = |direction: DVec3| {
-            direction.y > 0.0
-                && geometric_normal.dot(direction) > 0.0
-                && (is_open || !tracer.is_occluded(origin_m, &Direction::new(direction)))
+            let origin_m = from.origin_along(direction).filter(|_| direction.y > 0.0);
+            origin_m.is_some_and(|origin_m| from.is_open || !is_hidden(origin_m, direction))
         };
         match self {
             Self::Hard => f32::from(u8::from(reaches(sun.centre))),
@@ -102,31 +96,46 @@ impl Truth {
 }
 
 /// Where a pixel's rays to the light start.
-struct ShadowRayOrigin {
-    /// Unit normal on the side that the eye is on.
-    geometric_normal: DVec3,
+struct ShadowRays {
+    /// The point, with the side that the eye is on as its front.
+    point: SurfacePoint,
     /// A corner of the triangle. With it all points of the triangle agree on which side of their plane a lamp is.
     on_plane_m: DVec3,
-    point_m: DVec3,
-    origin_m: DVec3,
+    /// Each start, and its place.
+    starts: Vec<(RayStart, DVec3)>,
     /// Whether nothing shades the surface.
     is_open: bool,
 }
 
-impl ShadowRayOrigin {
+impl ShadowRays {
     fn new(stage: &Stage, ray: Vec3, hit: &Hit) -> Self {
-        let triangle = hit.triangle as usize;
-        let front = stage.geometry.normal(triangle);
-        let geometric_normal = if front.dot(ray.as_dvec3()) > 0.0 { -front } else { front };
-        let point_m = stage.geometry.point(triangle, hit.barycentric);
-        let on_plane_m = stage.geometry.triangles[triangle][0].as_dvec3();
-        Self {
-            geometric_normal,
-            on_plane_m,
-            point_m,
-            origin_m: stage.tracer().lift(point_m, geometric_normal, hit.triangle),
-            is_open: !stage.scene.receives(stage.geometry.instance[triangle] as usize),
-        }
+        let (geometry, triangle) = (&stage.geometry, hit.triangle as usize);
+        let point = SurfacePoint::of_triangle(&stage.scene, geometry, triangle, hit.barycentric);
+        let is_turned = point.normal.dot(ray.as_dvec3()) > 0.0;
+        let point = SurfacePoint {
+            normal: if is_turned { -point.normal } else { point.normal },
+            smooth: if is_turned { point.smooth.map(SmoothPoint::turned) } else { point.smooth },
+            is_double_sided: false,
+            ..point
+        };
+        let with_origin = |start: RayStart| (start, start.origin_m(stage.tracer(), &point));
+        let starts = ray_starts(&point).into_iter().map(with_origin).collect();
+        Self { point, on_plane_m: geometry.triangles[triangle][0].as_dvec3(), starts }
+    }
+
+    /// Where a ray along a direction starts; none where the surface faces away.
+    fn origin_along(&self, direction: DVec3) -> Option<DVec3> {
+        self.starts.iter().find(|(start, _)| start.faces(direction)).map(|(_, origin_m)| *origin_m)
+    }
+
+    /// The same for a ray to a lamp. Which side of the face it is on is asked of the whole triangle at once.
+    fn origin_towards(&self, lamp_m: DVec3) -> Option<DVec3> {
+        let (to_lamp_m, above_face_m) = (lamp_m - self.point.position_m, lamp_m - self.on_plane_m);
+        let faces = |start: &RayStart| match start.also {
+            None => start.normal.dot(above_face_m) > 0.0,
+            Some(also) => start.normal.dot(to_lamp_m) > 0.0 && also.dot(above_face_m) > 0.0,
+        };
+        self.starts.iter().find(|(start, _)| faces(start)).map(|(_, origin_m)| *origin_m)
     }
 }
 
@@ -155,12 +164,9 @@ impl Technique for Truth {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &sun) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(sun)) => self.sun_visibility_from(
-                shot.stage,
-                &ShadowRayOrigin::new(shot.stage, shot.ray(pixel), hit),
-                pixel,
-                sun,
-            ),
+            (Some(hit), Some(sun)) => {
+                self.sun_visibility_from(shot.stage, &ShadowRays::new(shot.stage, shot.ray(pixel), hit), pixel, sun)
+            }
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })
@@ -171,12 +177,9 @@ impl Technique for Truth {
         let seen = |(pixel, hit): (usize, &Option<Hit>)| match (hit, &lamp) {
             (None, _) => 1.0,
             (Some(_), None) => 0.0,
-            (Some(hit), Some(lamp)) => self.lamp_visibility_from(
-                shot.stage,
-                &ShadowRayOrigin::new(shot.stage, shot.ray(pixel), hit),
-                pixel,
-                lamp,
-            ),
+            (Some(hit), Some(lamp)) => {
+                self.lamp_visibility_from(shot.stage, &ShadowRays::new(shot.stage, shot.ray(pixel), hit), pixel, lamp)
+            }
         };
         let pixels = shot.hits().par_iter().enumerate().with_min_len(16).map(seen).collect();
         Ok(Raster { size: shot.view.size, pixels })

@@ -164,12 +164,7 @@ fn layers_by(
             let inside = inside / (inside.x + inside.y).max(1.0);
             let texel = (origin - 1.5).as_ivec2() + IVec2::new((i % cell) as i32, (i / cell) as i32);
             let barycentric = [f64::from(inside.x), f64::from(inside.y)];
-            let point = SurfacePoint {
-                position_m: geometry.point(triangle as usize, barycentric),
-                normal: geometry.normal(triangle as usize),
-                is_double_sided: scene.material(geometry.instance[triangle as usize] as usize).is_double_sided,
-                triangle,
-            };
+            let point = SurfacePoint::of_triangle(scene, geometry, triangle as usize, barycentric);
             let lit = &lit_at(engine, &point)[0];
             encoder.set((texel.y as u32 * edge + texel.x as u32) as usize, lit);
         }

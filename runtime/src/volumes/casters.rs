@@ -49,6 +49,8 @@ pub struct Caster {
     pub edges: Range<usize>,
     /// Whether all of it bounds solids.
     pub is_solid: bool,
+    /// Whether some of its triangles are facets of something smooth.
+    pub is_smooth: bool,
     /// Whether few of its edges are shared, as in foliage made of cards.
     pub is_soup: bool,
     /// Whether the front of every triangle is drawn.
@@ -246,7 +248,7 @@ fn arrange(
     for caster in 0..count as u32 {
         let (first, first_edge) = (next, next_edge);
         let mut sides = DrawnSides { front: true, back: true };
-        let mut is_solid = true;
+        let (mut is_solid, mut is_smooth) = (true, false);
         while next < order.len() && caster_of(order[next] as usize) == caster {
             let old = order[next] as usize;
             let shape = bodies.shapes[bodies.of_triangle[old] as usize];
@@ -260,6 +262,7 @@ fn arrange(
             sides.front &= if is_turned { drawn.back } else { drawn.front };
             sides.back &= if is_turned { drawn.front } else { drawn.back };
             is_solid &= shape != Shape::Open;
+            is_smooth |= stage.geometry.is_smooth(flat[old] as usize);
             let mut points =
                 welded.triangles[old].map(|point| renumber(point, caster, welded, &mut new_point, &mut casters));
             if is_turned {
@@ -278,6 +281,7 @@ fn arrange(
             triangles: first..next,
             edges: first_edge..next_edge,
             is_solid,
+            is_smooth,
             is_soup: is_soup(&casters, first_edge..next_edge),
             shows_fronts: sides.front,
             shows_both_sides: sides.front && sides.back,

@@ -33,6 +33,9 @@ pub struct Facings {
     /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside
     /// none of them.
     pub is_solid: Vec<bool>,
+    /// For each caster, whether it casts from its back faces instead: a smooth solid. Light then ends on it where shading
+    /// normals say, since the space between its front and its back faces is no part of its volume.
+    pub is_from_behind: Vec<bool>,
 }
 
 /// Distance from a triangle below which rounding hides on which side of it a lamp is, in `f32` steps of the largest
@@ -69,17 +72,22 @@ impl Light {
     }
 
     /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; with
-    /// `omits_back_faces_of_solids` they are left out. Triangles that are edge on have no prism.
+    /// `omits_back_faces_of_solids` they are left out. Smooth solids cast from their back faces, whatever is asked for.
+    /// Triangles that are edge on have no prism.
     pub fn facings(&self, casters: &Casters, omits_back_faces_of_solids: bool) -> Facings {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
-        let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
+        let is_from_behind: Vec<bool> =
+            casters.all.iter().zip(&is_solid).map(|(caster, is_solid)| caster.is_smooth && *is_solid).collect();
+        let of_caster = |((caster, &is_solid), &is_from_behind): ((&Caster, &bool), &bool)| {
+            let omits_fronts = is_from_behind;
+            let omits_backs = omits_back_faces_of_solids && is_solid && !is_from_behind;
             caster.triangles.clone().into_par_iter().with_min_len(1024).map(move |triangle| {
                 let front = self.front(&casters.corners_m(triangle));
-                i8::from(front > 0.0) - i8::from(front < 0.0 && !(omits_back_faces_of_solids && is_solid))
+                i8::from(front > 0.0 && !omits_fronts) - i8::from(front < 0.0 && !omits_backs)
             })
         };
-        let of_triangle = casters.all.par_iter().zip(&is_solid).flat_map(of_caster).collect();
-        Facings { of_triangle, is_solid }
+        let of_triangle = casters.all.par_iter().zip(&is_solid).zip(&is_from_behind).flat_map(of_caster).collect();
+        Facings { of_triangle, is_solid, is_from_behind }
     }
 }
 

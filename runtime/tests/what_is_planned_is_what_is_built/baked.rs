@@ -1,6 +1,6 @@
 //! Playback of a bake.
 
-use crate::{ASIDE, CELL, cube, draw, plain_box, quad, shot, sun, turned_on};
+use crate::{ASIDE, CELL, bent_quad, cube, draw, plain_box, quad, shot, sun, turned_on};
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec4};
 use sunbake::disk::manifest::InstanceEntry;
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits, LayerMaps};
@@ -90,6 +90,8 @@ fn each_property_of_surfaces_adds_its_own_resources() {
     let colors = Mesh { colors: Some(vec![Vec4::ONE; 6]), ..quad() };
     let adds = Census { pipelines: 1, vertex_buffers: 1, ..one };
     holds(&box_and(SceneBuilder::new(), colors, opaque()), "vertex-colours", adds);
+    let adds = Census { pipelines: 1, ..one };
+    holds(&box_and(SceneBuilder::new(), bent_quad(), opaque()), "smooth-terminator", adds);
     let (builder, image) = SceneBuilder::new().image(4, 4, vec![[90, 120, 60, 255]; 16]);
     let texture = TextureRef { image, texcoord: 0, image_from_texcoord: Mat3::IDENTITY, wrap: [Wrap::Repeat; 2] };
     let textured = Material { base_color_texture: Some(texture), ..opaque() };

@@ -6,11 +6,11 @@ mod looks;
 mod shadow_maps;
 mod volumes;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, Vec2, Vec3};
 use sunbake::maps::Bits;
 use sunbake::scene::{Mesh, Scene};
 use sunbake::sun::SunPath;
-use sunbake::testing::{SceneBuilder, block, floor};
+use sunbake::testing::{SceneBuilder, ball, block, floor, opaque};
 use sunbake_runtime::gpu::{Output, VolumeSettings};
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::technique::{BakedCpu, BakedGpu, ShadowMaps, Technique, Truth, Volumes};
@@ -106,6 +106,19 @@ fn every_effect_states_why_its_cost_and_what_toggles_it() {
 fn with_lid(builder: SceneBuilder) -> SceneBuilder {
     let lid: Vec<_> = cube(1.5)[2..].iter().map(|t| t.map(|v| v + Vec3::new(0.0, 0.2, 0.0))).collect();
     with_box(builder).soup(&lid)
+}
+
+/// A ball beside the box.
+fn with_ball(builder: SceneBuilder) -> SceneBuilder {
+    let mesh = ball(12, 8, Vec3::new(1.8, 1.1, 0.5), 0.5);
+    with_box(builder).mesh_of(mesh, opaque(), &[DMat4::IDENTITY])
+}
+
+/// The quad with normals of something round.
+fn bent_quad() -> Mesh {
+    let quad = quad();
+    let normals = quad.positions.iter().map(|p| Vec3::new(p.x - 0.5, 1.5, p.z - 0.5).normalize()).collect();
+    Mesh { normals: Some(normals), ..quad }
 }
 
 fn quad() -> Mesh {

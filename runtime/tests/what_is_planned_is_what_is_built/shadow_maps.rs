@@ -1,6 +1,6 @@
 //! Shadow maps.
 
-use crate::{ASIDE, CELL, EDGE, OUTPUTS, draw, on_ground, quad, shot, sun, with_box};
+use crate::{ASIDE, CELL, EDGE, OUTPUTS, draw, on_ground, quad, shot, sun, with_ball, with_box};
 use glam::DMat4;
 use sunbake::maps::Bits;
 use sunbake::scene::{Alpha, Material};
@@ -42,9 +42,10 @@ fn every_variant_of_maps_builds_what_is_planned_and_adds_its_own() {
         with_box(builder).mesh_of(quad(), material, &[DMat4::IDENTITY])
     };
     let leafy = Stage::plain(on_ground(leaf), sun(0.0047));
+    let round = Stage::plain(on_ground(with_ball), sun(0.0047));
     let lit_by_both = with_lamp(bake(on_ground(with_box), sun(0.0047), CELL, Bits::Eight), &lamp_at(ASIDE), CELL);
     for variant in Variant::ALL {
-        for stage in [&boxed, &bare, &leafy, &lit_by_both] {
+        for stage in [&boxed, &bare, &leafy, &round, &lit_by_both] {
             OUTPUTS.iter().for_each(|&output| drop(under_maps(&gpu, stage, variant, output)));
         }
         let [(open, open_plan), (found, plan)] = [&bare, &boxed].map(|s| under_maps(&gpu, s, variant, Output::Lit));
@@ -63,6 +64,11 @@ fn every_variant_of_maps_builds_what_is_planned_and_adds_its_own() {
             assert!(!plan.is_on(effect) || of.contains(&variant), "{variant}: {effect}");
             assert!(plan.is_on(effect) || effect == "several-maps" || !of.contains(&variant), "{variant}: {effect}");
         }
+        // What rises above facets is read from a buffer of its own, where anything is compared with maps.
+        let (_, plan) = under_maps(&gpu, &round, variant, Output::Lit);
+        let buffers = usize::from(variant != Variant::Planar);
+        let takes = plan.need("smooth-terminator").unwrap().takes;
+        assert_eq!((takes.vertex_buffers, takes.pipelines, takes.draws), (buffers, 1, 1), "{variant}");
         let (_, plan) = under_maps(&gpu, &leafy, variant, Output::Lit);
         assert!(plan.is_on("alpha-test") && plan.need("alpha-test").unwrap().takes.shadow_pipelines > 0, "{variant}");
     }

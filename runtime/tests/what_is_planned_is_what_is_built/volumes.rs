@@ -1,6 +1,6 @@
 //! Shadow volumes.
 
-use crate::{ASIDE, OUTPUTS, cube, draw, on_ground, shot, sun, turned_on, with_box, with_lid};
+use crate::{ASIDE, OUTPUTS, cube, draw, on_ground, shot, sun, turned_on, with_ball, with_box, with_lid};
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake_runtime::gpu::{Gpu, Output, VolumeSettings, volumes_plan};
@@ -65,6 +65,12 @@ fn volumes_build_what_is_planned_and_each_need_adds_its_own() {
     let adds = Census { pipelines: 1, stencil_pipelines: 1, ..Census::default() };
     assert_eq!(found.beyond(&base), Census { volume_bytes: bytes, ..adds });
     assert_eq!(plan.need("z-fail").unwrap().takes, adds);
+    // A smooth solid: its back faces cast, before the surface, and surfaces of two kinds are drawn.
+    let (found, plan) = under_volumes(&gpu, &stage(with_ball), settings, ASIDE, Output::Lit);
+    assert_eq!(turned_on(&plan, &base_plan), ["z-fail", "smooth-solids", "smooth-terminator"]);
+    let adds = Census { pipelines: 1, stencil_pipelines: 1, ..Census::default() };
+    assert_eq!(plan.need("smooth-solids").unwrap().takes, adds);
+    assert_eq!(found.beyond(&base).stencil_pipelines, 2);
     // An eye in the shadow: behind, and no longer in front.
     let alone = Stage::plain(SceneBuilder::new().soup(&cube(0.0)).build(), sun(0.0));
     let (found, plan) = under_volumes(&gpu, &alone, settings, DVec3::new(0.3, -0.5, 0.3), Output::Lit);
@@ -96,7 +102,7 @@ fn volumes_build_what_is_planned_and_each_need_adds_its_own() {
 #[test]
 fn volumes_of_every_mode_and_kind_build_what_is_planned() {
     let gpu = gpu();
-    let edits: [fn(SceneBuilder) -> SceneBuilder; 4] = [with_box, with_lid, with_sheets, |builder| builder];
+    let edits: [fn(SceneBuilder) -> SceneBuilder; 5] = [with_box, with_lid, with_sheets, with_ball, |builder| builder];
     for (edit, mode) in edits.into_iter().flat_map(|edit| Mode::ALL.map(|mode| (edit, mode))) {
         for (sun_samples, output) in [1, 2].into_iter().flat_map(|n| OUTPUTS.map(|output| (n, output))) {
             let settings = VolumeSettings { mode, sun_samples, ..VolumeSettings::default() };

@@ -7,4 +7,5 @@ mod awkward_paths;
 mod awkward_triangles;
 mod leaves_and_fences;
 mod random_scenes;
+mod smooth_surfaces;
 mod spheres_and_needles;

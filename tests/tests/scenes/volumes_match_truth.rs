@@ -20,6 +20,8 @@ use sunbake_tests::needs::{of_gas_station, of_scene};
 
 /// Share of pixels that may show another surface than a ray meets, or lie at an edge that no neighbour shows.
 const FEW: f64 = 1e-4;
+/// Share of pixels on facets of smooth open meshes that turn away from the light where the mesh does not.
+const FEW_FACETS: f64 = 0.01;
 /// Share of the band that may be wrong: its pixels lie beside an edge, and few of them on it.
 const FEW_IN_BAND: f64 = 0.01;
 
@@ -52,6 +54,8 @@ fn masks_are_right(scene: &Path, edge_px: u32) {
     println!("{}", all.sentence());
     let excused = (all.at_fine_edges + all.of_other_surfaces) as f64 / all.pixels as f64;
     assert!(excused < FEW, "{excused}");
+    let on_facets = all.on_turned_facets as f64 / all.pixels as f64;
+    assert!(on_facets < FEW_FACETS, "{}", all.sentence());
     assert!((all.wrong_in_band as f64) < FEW_IN_BAND * all.in_band as f64, "{all:?}");
 }
 

@@ -17,6 +17,12 @@ impl Gaps {
         self.0.extend(pairs.filter(|span| span[0] < span[1]));
     }
 
+    /// Keeps what lies in ascending, disjoint spans.
+    pub fn intersect(&mut self, spans: &[[f64; 2]]) {
+        let gaps = std::mem::take(&mut self.0);
+        self.set_intersection(&gaps, spans);
+    }
+
     pub fn as_slice(&self) -> &[[f64; 2]] {
         &self.0
     }

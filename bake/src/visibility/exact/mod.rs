@@ -28,6 +28,7 @@ mod seeds;
 mod solve;
 mod walk;
 
+use super::start::{RayStart, ray_starts};
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::sun::SunPath;
@@ -83,15 +84,15 @@ impl Engine for ExactEngine<'_> {
 
     fn session(&self) -> Box<dyn Session + '_> {
         let closer = |arc| GapCloser::new(self.tracer, arc);
-        let closers = self.arcs.iter().map(|arc| [closer(&arc.frame), closer(&arc.frame)]).collect();
+        let closers = self.arcs.iter().map(|arc| std::array::from_fn(|_| closer(&arc.frame))).collect();
         Box::new(ExactSession { engine: self, closers, scratch: PointScratch::default() })
     }
 }
 
 struct ExactSession<'a> {
     engine: &'a ExactEngine<'a>,
-    /// For each arc, one for each side of a surface: seeds of the front are not those of the back.
-    closers: Vec<[GapCloser<'a>; 2]>,
+    /// For each arc, one for each kind of start: seeds of the front are not those of the back.
+    closers: Vec<[GapCloser<'a>; RayStart::KINDS]>,
     scratch: PointScratch,
 }
 
@@ -119,8 +120,9 @@ impl ExactSession<'_> {
     fn lit_with<S: Simd>(&mut self, simd: S, points: &[SurfacePoint], answers: &mut IntervalTable) {
         self.scratch.lit.resize_with(self.engine.lane_count, Vec::new);
         for point in points {
+            let starts = ray_starts(point);
             for arc in 0..self.engine.arcs.len() {
-                (0..=usize::from(point.is_double_sided)).for_each(|side| self.solve_side(simd, arc, side, point));
+                starts.iter().for_each(|start| self.solve_start(simd, arc, start, point));
             }
             for times in &mut self.scratch.lit {
                 answers.push(&Intervals::from_unsorted(std::mem::take(times)));
@@ -128,15 +130,15 @@ impl ExactSession<'_> {
         }
     }
 
-    /// Finds the lit spans of one arc on one side of a point.
-    fn solve_side<S: Simd>(&mut self, simd: S, arc: usize, side: usize, point: &SurfacePoint) {
+    /// Finds the lit spans of one arc that rays from one start of a point reach.
+    fn solve_start<S: Simd>(&mut self, simd: S, arc: usize, start: &RayStart, point: &SurfacePoint) {
         let Self { engine, closers, scratch: PointScratch { walk, query, lit } } = self;
         let Arc { frame, frames } = &engine.arcs[arc];
-        if !engine.start_query(frame, point, side, query) {
+        if !engine.start_query(frame, point, start, query) {
             return;
         }
         if !engine.bvh.nodes.is_empty() {
-            let closer = &mut closers[arc][side];
+            let closer = &mut closers[arc][start.kind()];
             walk.work.triangles += closer.close_with_seeds(simd, query);
             if !query.is_done() {
                 walk.close(simd, &engine.bvh, frames, closer, query);
@@ -149,19 +151,23 @@ impl ExactSession<'_> {
 }
 
 impl ExactEngine<'_> {
-    /// Starts a query of an arc at one side of a point. False if the sun is never in front of that side.
-    fn start_query(&self, frame: &ArcFrame, point: &SurfacePoint, side: usize, query: &mut Query) -> bool {
-        let normal = if side == 0 { point.normal } else { -point.normal };
-        let (up, facing) = (frame.arc_from_bake * DVec3::Y, frame.arc_from_bake * normal);
+    /// Starts a query of an arc at one start of a point. False if the sun is never in front of it.
+    fn start_query(&self, frame: &ArcFrame, point: &SurfacePoint, start: &RayStart, query: &mut Query) -> bool {
+        let (up, facing) = (frame.arc_from_bake * DVec3::Y, frame.arc_from_bake * start.normal);
         query.gaps.resize_with(frame.lanes.len(), Default::default);
         for (lane, gaps) in query.gaps.iter_mut().enumerate() {
             let above = frame.half_space(up, 0.0, lane);
             gaps.set_intersection(above.as_slice(), frame.half_space(facing, 0.0, lane).as_slice());
+            if let Some(also) = start.also {
+                gaps.intersect(frame.half_space(frame.arc_from_bake * also, 0.0, lane).as_slice());
+            }
         }
-        let start = self.tracer.lift(point.position_m, normal, point.triangle) * self.tracer.tracer_from_bake();
-        query.origin = frame.arc_from_bake * start;
+        if query.is_done() {
+            return false;
+        }
+        query.origin = frame.arc_from_bake * (start.origin_m(self.tracer, point) * self.tracer.tracer_from_bake());
         query.side = facing;
-        !query.is_done()
+        true
     }
 }
 
@@ -191,6 +197,7 @@ mod tests {
             normal: geometry.normal(0),
             is_double_sided: true,
             triangle: 0,
+            smooth: None,
         };
         let points: Vec<SurfacePoint> = (0..400).map(point).collect();
         let mut answers = IntervalTable::default();

@@ -6,8 +6,8 @@
 //! texel by texel (`alpha_mask.rs`). The walk skips boxes that can occlude only what is occluded already, and stops
 //! when nothing is open (`open.rs`). The occluders of the previous point are tested first (`seeds.rs`).
 //!
-//! A lamp has no horizon. The condition that it is in front of the surface's plane is linear in s, too. For a
-//! double-sided surface, rays start on the side that faces the lamp. [`LampRays`] traces rays to evenly spaced
+//! A lamp has no horizon. The condition that it is in front of the surface's planes is linear in s, too. Rays start
+//! where [`super::ray_starts`] says. [`LampRays`] traces rays to evenly spaced
 //! positions of the lamp, for comparison.
 
 mod alpha_mask;
@@ -20,6 +20,7 @@ mod walk;
 
 pub use rays::LampRays;
 
+use super::start::{RayStart, ray_starts};
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::lamp::{LampPath, LampSegment};
@@ -63,8 +64,8 @@ impl Engine for LampEngine<'_> {
 
 struct LampSession<'a> {
     engine: &'a LampEngine<'a>,
-    /// For each segment, one for each side of a surface.
-    seeds: Vec<[SeedTriangles; 2]>,
+    /// For each segment, one for each kind of start.
+    seeds: Vec<[SeedTriangles; RayStart::KINDS]>,
     work: Work,
     stack: Vec<u32>,
 }
@@ -73,10 +74,9 @@ impl Session for LampSession<'_> {
     fn lit(&mut self, points: &[SurfacePoint], answers: &mut IntervalTable) {
         for point in points {
             let mut lit = Vec::new();
+            let starts = ray_starts(point);
             for index in 0..self.engine.segments.len() {
-                for side in 0..=usize::from(point.is_double_sided) {
-                    self.lit_on(index, point, side, &mut lit);
-                }
+                starts.iter().for_each(|start| self.lit_on(index, point, start, &mut lit));
             }
             answers.push(&Intervals::from_unsorted(lit));
         }
@@ -88,27 +88,31 @@ impl Session for LampSession<'_> {
 }
 
 impl LampSession<'_> {
-    /// Adds the times at which one side of a point sees the lamp on a segment.
-    fn lit_on(&mut self, index: usize, point: &SurfacePoint, side: usize, lit: &mut Vec<[f64; 2]>) {
+    /// Adds the times at which rays from one start of a point reach the lamp on a segment.
+    fn lit_on(&mut self, index: usize, point: &SurfacePoint, start: &RayStart, lit: &mut Vec<[f64; 2]>) {
         let LampEngine { tracer, segments, .. } = self.engine;
         let segment = &segments[index];
-        let normal = if side == 0 { point.normal } else { -point.normal };
-        let mut open = OpenSpans::new(in_front_of_plane(segment, point.position_m, normal));
+        let in_front_of = |normal: DVec3| in_front_of_plane(segment, point.position_m, normal);
+        let in_front = in_front_of(start.normal);
+        let mut open = OpenSpans::new(match start.also {
+            Some(also) => in_front.and_then(|span| common(span, in_front_of(also)?)),
+            None => in_front,
+        });
         if open.is_empty() {
             return;
         }
         let scale = tracer.tracer_from_bake();
-        let origin = tracer.lift(point.position_m, normal, point.triangle) * scale;
+        let origin = start.origin_m(tracer, point) * scale;
         let from_point =
             SegmentFromPoint { ends: segment.ends_m.map(|end| end * scale - origin), run_up: tracer.run_up() };
-        self.close(index, side, origin, &from_point, &mut open);
+        self.close(index, start.kind(), origin, &from_point, &mut open);
         lit.extend(open.as_slice().iter().map(|span| span.map(|s| t_of(segment, s))));
     }
 
     /// Closes all that is occluded.
-    fn close(&mut self, index: usize, side: usize, origin: DVec3, from_point: &SegmentFromPoint, open: &mut OpenSpans) {
+    fn close(&mut self, index: usize, kind: usize, origin: DVec3, from_point: &SegmentFromPoint, open: &mut OpenSpans) {
         let tracer = self.engine.tracer;
-        let seeds = &mut self.seeds[index][side];
+        let seeds = &mut self.seeds[index][kind];
         seeds.next_point();
         self.work.triangles += seeds.try_all(|id| (close_with(tracer, id, origin, from_point, open), open.is_empty()));
         if open.is_empty() {

@@ -4,7 +4,7 @@
 //! is lit or dark as its ray is. Edges are off by half a step at most, and what is thinner than a step may be missed.
 //! The occluder of the previous position and the last occluder of this one are tested before the hierarchy is walked.
 
-use super::super::probe::side_towards;
+use super::super::probe::Probe;
 use super::{Engine, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
 use crate::lamp::LampPath;
@@ -51,10 +51,9 @@ impl Session for LampRaySession<'_> {
         let count = self.engine.positions_m.len();
         let t = |step: usize| step as f64 / count as f64;
         for point in points {
-            let origins_m =
-                [1.0, -1.0].map(|s| self.engine.tracer.lift(point.position_m, point.normal * s, point.triangle));
+            let probe = Probe::new(self.engine.tracer, point);
             let mut before = None;
-            let is_lit = |&step: &usize| self.is_lit(point, &origins_m, step, &mut before);
+            let is_lit = |&step: &usize| self.is_lit(point, &probe, step, &mut before);
             // Neighbouring steps share an end, computed alike, and are joined.
             let lit = (0..count).filter(is_lit);
             let steps = lit.map(|step| [t(step), t(step + 1)]);
@@ -69,18 +68,12 @@ impl Session for LampRaySession<'_> {
 
 impl LampRaySession<'_> {
     /// `before` is the occluder of the previous position; it becomes that of this one.
-    fn is_lit(
-        &mut self,
-        point: &SurfacePoint,
-        origins_m: &[DVec3; 2],
-        step: usize,
-        before: &mut Option<Occluder>,
-    ) -> bool {
+    fn is_lit(&mut self, point: &SurfacePoint, probe: &Probe, step: usize, before: &mut Option<Occluder>) -> bool {
         let LampRays { tracer, positions_m } = self.engine;
         let lamp_m = positions_m[step];
-        let Some(side) = side_towards(point, lamp_m - point.position_m) else { return false };
+        let Some(start) = probe.start_towards(lamp_m - point.position_m) else { return false };
         self.work.rays += 1;
-        let origin_m = origins_m[side as usize];
+        let origin_m = probe.origin_m(start);
         let last = &mut self.last[step];
         let hides = |guess: &Occluder| tracer.is_hidden_by(*guess, origin_m, lamp_m);
         let guessed = [*last, *before].into_iter().flatten().find(hides);

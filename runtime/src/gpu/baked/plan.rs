@@ -1,6 +1,6 @@
 //! What pictures of a baked stage call for.
 
-use crate::gpu::frame::{BatchKey, Output, ProgramKey, depth_key, with_pipelines};
+use crate::gpu::frame::{BatchKey, BatchRequest, Output, ProgramKey, depth_key, with_pipelines};
 use crate::gpu::plan::{SceneEffects, SceneNeeds, of_passes};
 use crate::plan::{Census, DrawPlan};
 use crate::stage::Stage;
@@ -32,7 +32,7 @@ impl ProgramKey for BakedProgram {
 
 /// What pictures of a kind call for of a baked stage of which nothing has been built.
 pub fn baked_plan(stage: &Stage, output: Output) -> DrawPlan {
-    plan(&SceneNeeds::new(stage, None), output)
+    plan(&SceneNeeds::new(stage, BatchRequest::default()), output)
 }
 
 /// What pictures of a kind call for of a scene.

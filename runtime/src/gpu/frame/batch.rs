@@ -4,14 +4,15 @@
 //! for bit what is traced.
 
 use super::Output;
-use crate::shadow_maps::Ground;
+use crate::shadow_maps::{Ground, free_edge_lifts_m};
 use crate::stage::Stage;
 use crate::texture::Encoding;
 use glam::{Vec2, Vec4};
 use std::collections::BTreeMap;
 use sunbake::scene::{Alpha, TextureRef, Wrap};
 use sunbake_shaders::{
-    ColorVertex, LookVariant, NormalVertex, PositionVertex, Stream, SurfaceVariant, SurfaceVertex, TextureVertex,
+    ColorVertex, LiftVertex, LookVariant, NormalVertex, PositionVertex, Stream, SurfaceVariant, SurfaceVertex,
+    TextureVertex,
 };
 
 /// What the triangles of one draw share.
@@ -102,6 +103,15 @@ impl BatchKey {
     }
 }
 
+/// What a technique wants of batches.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BatchRequest<'a> {
+    /// The ground, for batches of its own, and beside it what casts and is not drawn.
+    pub ground: Option<&'a Ground>,
+    /// Whether facets of something smooth say how far that is above them.
+    pub wants_lift: bool,
+}
+
 /// A texture with its sampler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct TextureKey {
@@ -152,6 +162,8 @@ pub struct Vertices {
     pub normals: Vec<NormalVertex>,
     /// Of triangles with an emissive texture.
     pub emissive: Vec<TextureVertex>,
+    /// Of facets of something smooth, if wanted.
+    pub lifts: Vec<LiftVertex>,
 }
 
 impl Vertices {
@@ -163,6 +175,7 @@ impl Vertices {
             (Stream::MetallicRoughness, self.metallic_roughness.len() as u64),
             (Stream::Normal, self.normals.len() as u64),
             (Stream::Emissive, self.emissive.len() as u64),
+            (Stream::Lift, self.lifts.len() as u64),
         ])
     }
 }
@@ -178,15 +191,18 @@ pub fn wrap_code(wrap: Wrap) -> u32 {
 
 /// Sorts triangles into batches and lays out the streams. With a ground, the ground gets batches of its own, and so
 /// does what casts and is not drawn.
-pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices) {
+pub fn batches(stage: &Stage, request: BatchRequest) -> (Vec<Batch>, Vertices) {
     let mut vertices = Vertices::default();
-    let batches = by_key(stage, ground).into_iter().map(|(key, triangles)| {
+    let batches = by_key(stage, request).into_iter().map(|(key, triangles)| {
         let batch = Batch {
             key,
             vertex_count: 3 * triangles.len() as u32,
             first: vertices.positions.len() as u64,
             first_of: vertices.lengths(),
         };
+        if key.surface.has_lift {
+            push_lifts(stage, &triangles, &mut vertices);
+        }
         triangles.into_iter().for_each(|triangle| push_triangle(stage, triangle, &key, &mut vertices));
         batch
     });
@@ -194,7 +210,8 @@ pub fn batches(stage: &Stage, ground: Option<&Ground>) -> (Vec<Batch>, Vertices)
 }
 
 /// The triangles of each batch.
-pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<usize>> {
+pub fn by_key(stage: &Stage, request: BatchRequest) -> BTreeMap<BatchKey, Vec<usize>> {
+    let BatchRequest { ground, wants_lift } = request;
     let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
     for instance in 0..stage.scene.instances.len() {
         let key = key(stage, instance);
@@ -209,7 +226,9 @@ pub fn by_key(stage: &Stage, ground: Option<&Ground>) -> BTreeMap<BatchKey, Vec<
             let is_ground = ground.is_some_and(|ground| ground.holds(triangle));
             let key = if is_hidden { key.without_look() } else { key };
             let (is_two_sided, is_passed) = (sides.front && sides.back, ground.is_some() && !casts);
-            let key = BatchKey { is_two_sided, is_ground, is_hidden, is_passed, ..key };
+            let is_smooth = !is_hidden && stage.geometry.is_smooth(triangle);
+            let surface = SurfaceVariant { is_smooth, has_lift: is_smooth && wants_lift, ..key.surface };
+            let key = BatchKey { surface, is_two_sided, is_ground, is_hidden, is_passed, ..key };
             triangles.entry(key).or_default().push(triangle);
         }
     }
@@ -239,6 +258,7 @@ fn key(stage: &Stage, instance: usize) -> BatchKey {
                 has_emissive_map: textures.emissive.is_some(),
                 is_blended: false,
             },
+            ..SurfaceVariant::default()
         },
         is_two_sided: false,
         is_ground: false,
@@ -255,9 +275,7 @@ fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut 
     let instance = stage.geometry.instance[triangle] as usize;
     let corners = stage.corners(triangle);
     let front_normal = stage.geometry.normal(triangle).as_vec3().to_array();
-    // Corners in the order that is counter-clockwise from the drawn side. A mirrored instance reverses it.
-    let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
-    let order = if is_turned { [0, 2, 1] } else { [0, 1, 2] };
+    let order = corner_order(stage, triangle);
     for k in order {
         let position_m = stage.geometry.triangles[triangle][k].to_array();
         vertices.positions.push(PositionVertex { position_m });
@@ -278,6 +296,26 @@ fn push_triangle(stage: &Stage, triangle: usize, key: &BatchKey, vertices: &mut 
     }
     if key.surface.look != LookVariant::default() {
         push_look(stage, triangle, order, vertices);
+    }
+}
+
+/// Corners in the order that is counter-clockwise from the drawn side. A mirrored instance reverses it.
+fn corner_order(stage: &Stage, triangle: usize) -> [usize; 3] {
+    let instance = stage.geometry.instance[triangle] as usize;
+    let is_turned = stage.scene.instances[instance].is_mirrored == stage.sides(triangle).front;
+    if is_turned { [0, 2, 1] } else { [0, 1, 2] }
+}
+
+fn push_lifts(stage: &Stage, triangles: &[usize], vertices: &mut Vertices) {
+    for (&triangle, lifts_m) in triangles.iter().zip(free_edge_lifts_m(stage, triangles)) {
+        let [first_lift_m, second_lift_m, third_lift_m] = lifts_m.map(|lift_m| lift_m.to_array());
+        let vertex = |k: usize| LiftVertex {
+            first_lift_m,
+            second_lift_m,
+            third_lift_m,
+            lift_weights: [1, 2].map(|corner| f32::from(u8::from(k == corner))),
+        };
+        vertices.lifts.extend(corner_order(stage, triangle).map(vertex));
     }
 }
 

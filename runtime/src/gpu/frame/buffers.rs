@@ -14,7 +14,7 @@ use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Uploads the streams that have vertices.
 pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream, wgpu::Buffer>, GpuError> {
-    let all: [(Stream, &[u8]); 7] = [
+    let all: [(Stream, &[u8]); 8] = [
         (Stream::Position, bytemuck::cast_slice(&vertices.positions)),
         (Stream::Surface, bytemuck::cast_slice(&vertices.surfaces)),
         (Stream::Texture, bytemuck::cast_slice(&vertices.textures)),
@@ -22,6 +22,7 @@ pub fn upload_streams(gpu: &Gpu, vertices: &Vertices) -> Result<BTreeMap<Stream,
         (Stream::MetallicRoughness, bytemuck::cast_slice(&vertices.metallic_roughness)),
         (Stream::Normal, bytemuck::cast_slice(&vertices.normals)),
         (Stream::Emissive, bytemuck::cast_slice(&vertices.emissive)),
+        (Stream::Lift, bytemuck::cast_slice(&vertices.lifts)),
     ];
     let limit = gpu.device.limits().max_buffer_size;
     let mut streams = BTreeMap::new();

@@ -14,7 +14,7 @@ mod scene;
 mod target;
 mod textures;
 
-pub use batch::{Batch, BatchKey, TextureSet, by_key};
+pub use batch::{Batch, BatchKey, BatchRequest, TextureSet, by_key};
 pub use blended::BlendedDraws;
 pub use buffers::write_in_order;
 pub use output::Output;

@@ -1,7 +1,7 @@
 //! A stage's surfaces on the GPU: what every technique that draws there shares.
 
 use super::Output;
-use super::batch::{Batch, BatchKey, TextureSet, batches};
+use super::batch::{Batch, BatchKey, BatchRequest, TextureSet, batches};
 use super::blended::{BlendedDraws, BlendedTriangles};
 use super::buffers::{FrameBindings, upload_streams};
 use super::page_textures::PageTextures;
@@ -10,11 +10,10 @@ use super::textures::SurfaceTextures;
 use crate::gpu::device::{Gpu, GpuError};
 use crate::gpu::plan::{PageNeeds, SceneNeeds};
 use crate::plan::Census;
-use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use glam::Vec3;
 use std::collections::BTreeMap;
-use sunbake_shaders::{PageVariant, Stream};
+use sunbake_shaders::{PageVariant, Stream, SurfaceVariant};
 
 /// Surfaces, their maps and their textures: built once per stage.
 pub struct SceneOnGpu {
@@ -39,12 +38,12 @@ pub struct SceneOnGpu {
 impl SceneOnGpu {
     /// Uploads a stage.
     pub fn new(gpu: &Gpu, stage: &Stage) -> Result<Self, GpuError> {
-        Self::with_ground(gpu, stage, None)
+        Self::with(gpu, stage, BatchRequest::default())
     }
 
-    /// Uploads a stage, its ground as batches of their own, and casters that are not drawn.
-    pub fn with_ground(gpu: &Gpu, stage: &Stage, ground: Option<&Ground>) -> Result<Self, GpuError> {
-        let (batches, vertices) = batches(stage, ground);
+    /// Uploads a stage with what a technique wants of its batches.
+    pub fn with(gpu: &Gpu, stage: &Stage, request: BatchRequest) -> Result<Self, GpuError> {
+        let (batches, vertices) = batches(stage, request);
         let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key));
         let page = |(maps, page): (_, &PageNeeds)| PageTextures::new(gpu, maps, stage.bits, &page.variant);
         let pages = stage.pages.iter().zip(&needs.pages).map(page).collect::<Result<_, _>>()?;
@@ -170,7 +169,8 @@ impl SceneOnGpu {
 /// The key of a batch's depth program. Only alpha masks tell surfaces apart there.
 pub fn depth_key(key: &BatchKey) -> BatchKey {
     let key = key.without_look();
-    let surface = if key.surface.has_alpha_mask { key.surface } else { Default::default() };
+    let masked = SurfaceVariant { is_smooth: false, has_lift: false, ..key.surface };
+    let surface = if key.surface.has_alpha_mask { masked } else { Default::default() };
     let (is_ground, is_hidden, is_passed, is_open) = (false, false, false, false);
     BatchKey { surface, page: 0, textures: TextureSet::default(), is_ground, is_hidden, is_passed, is_open, ..key }
 }

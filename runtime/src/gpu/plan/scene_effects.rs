@@ -1,7 +1,7 @@
 //! Decisions about the effects that all renderers share: those of surfaces, their maps and their textures.
 
 use super::SceneNeeds;
-use crate::gpu::frame::{BatchKey, Output, TextureSet, depth_key};
+use crate::gpu::frame::{BatchKey, BatchRequest, Output, TextureSet, depth_key};
 use crate::plan::{Census, DrawEffect, DrawNeed, Reason};
 use crate::stage::Stage;
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use sunbake_shaders::{AmbientModel, LaneVariant, LookVariant, PageVariant, Surfa
 
 /// Decisions where only the maps take anything, and their bytes: for pictures that the CPU draws.
 pub fn of_maps_alone(stage: &Stage) -> (Vec<DrawNeed>, u64) {
-    let scene = SceneNeeds::new(stage, None);
+    let scene = SceneNeeds::new(stage, BatchRequest::default());
     let totals = |scene: &SceneNeeds| Census { map_bytes: scene.census().map_bytes, ..Census::default() };
     (SceneEffects { scene: &scene, totals: &totals }.all(), totals(&scene).map_bytes)
 }
@@ -25,7 +25,8 @@ pub struct SceneEffects<'a> {
 impl SceneEffects<'_> {
     /// Decisions about every effect of the scene itself.
     pub fn all(&self) -> Vec<DrawNeed> {
-        let surfaces = [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided()];
+        let surfaces =
+            [self.textures(), self.vertex_colors(), self.alpha_test(), self.two_sided(), self.smooth_terminator()];
         let surfaces = surfaces.into_iter().chain(self.of_looks());
         surfaces.chain(self.of_times()).chain(self.of_ambient()).chain([self.walls(), self.pages()]).collect()
     }
@@ -122,6 +123,14 @@ impl SceneEffects<'_> {
     fn two_sided(&self) -> DrawNeed {
         let count = self.scene.surfaces().filter(|key| key.is_two_sided).count();
         self.of_surfaces(DrawEffect::TwoSidedFaces, count, |key| BatchKey { is_two_sided: false, ..*key })
+    }
+
+    fn smooth_terminator(&self) -> DrawNeed {
+        let count = self.scene.surfaces().filter(|key| key.surface.is_smooth).count();
+        self.of_surfaces(DrawEffect::SmoothTerminator, count, |key| BatchKey {
+            surface: SurfaceVariant { is_smooth: false, has_lift: false, ..key.surface },
+            ..*key
+        })
     }
 
     /// What a change to all pages would save.

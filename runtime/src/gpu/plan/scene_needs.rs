@@ -1,10 +1,9 @@
 //! What a stage's surfaces, their maps and their textures call for. [`SceneOnGpu`](crate::gpu::frame::SceneOnGpu)
 //! builds what is stated here, and plans count it.
 
-use crate::gpu::frame::{BatchKey, Output, TextureImage, TextureSet, by_key};
+use crate::gpu::frame::{BatchKey, BatchRequest, Output, TextureImage, TextureSet, by_key};
 use crate::plan::Census;
 use crate::playback::page_variant;
-use crate::shadow_maps::Ground;
 use crate::stage::Stage;
 use std::collections::BTreeSet;
 use sunbake::maps::{AmbientTextures, GpuTexel};
@@ -35,10 +34,9 @@ pub struct PageNeeds {
 }
 
 impl SceneNeeds {
-    /// What a stage calls for. With a ground, the ground is batches of its own, and casters that are not drawn are
-    /// included.
-    pub fn new(stage: &Stage, ground: Option<&Ground>) -> Self {
-        Self::of(stage, by_key(stage, ground).into_keys())
+    /// What a stage calls for, with what a technique wants of its batches.
+    pub fn new(stage: &Stage, request: BatchRequest) -> Self {
+        Self::of(stage, by_key(stage, request).into_keys())
     }
 
     /// What a stage calls for whose surfaces are drawn in these batches.

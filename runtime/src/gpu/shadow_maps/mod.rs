@@ -19,7 +19,8 @@ mod textures;
 
 use super::device::{Gpu, GpuError};
 use super::frame::{
-    DEPTH_FORMAT, FrameTimes, Output, OwnTargets, PassClock, ProgramTable, SceneOnGpu, readback, with_pipelines,
+    BatchRequest, DEPTH_FORMAT, FrameTimes, Output, OwnTargets, PassClock, ProgramTable, SceneOnGpu, readback,
+    with_pipelines,
 };
 use super::plan::SceneNeeds;
 use crate::View;
@@ -100,7 +101,7 @@ impl<'g> MapRenderer<'g> {
         let halfway = compares(&settings).then(|| probe::halfway(gpu)).transpose()?;
         let reads = MapReads::new(&settings, shadow_scene.ground.height_m.is_some(), halfway);
         let scene =
-            gpu.checked("uploading the scene", || SceneOnGpu::with_ground(gpu, stage, Some(&shadow_scene.ground)))??;
+            gpu.checked("uploading the scene", || SceneOnGpu::with(gpu, stage, request(&settings, &shadow_scene)))??;
         Ok(Self {
             bindings: gpu.checked("preparing shadow maps", || MapBindings::new(gpu, &reads))?,
             gpu,
@@ -250,6 +251,12 @@ fn compares(settings: &MapSettings) -> bool {
     !settings.gathers() && !matches!(settings.variant, Variant::Plain | Variant::Planar)
 }
 
+/// What shadow maps want of batches. Casters that are projected flat are compared with nothing.
+fn request<'a>(settings: &MapSettings, scene: &'a ShadowScene) -> BatchRequest<'a> {
+    let wants_lift = settings.variant != Variant::Planar && settings.optimizations.sampling;
+    BatchRequest { ground: Some(&scene.ground), wants_lift }
+}
+
 /// An upper bound of what pictures of a kind and of a number of pixels call for, whatever the view and the moment, of a
 /// stage of which nothing has been built.
 pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: u64) -> DrawPlan {
@@ -258,5 +265,5 @@ pub fn maps_plan(stage: &Stage, settings: &MapSettings, output: Output, pixels: 
     let halfway = compares(settings).then_some(0.5);
     let reads = MapReads::new(settings, scene.ground.height_m.is_some(), halfway);
     let needs = MapNeeds::most(stage, &scene, settings, reads, output, pixels);
-    needs.plan(&SceneNeeds::new(stage, Some(&scene.ground)))
+    needs.plan(&SceneNeeds::new(stage, request(settings, &scene)))
 }

@@ -25,6 +25,7 @@ impl VolumeDecisions<'_> {
             self.counted(true),
             self.counted(false),
             self.open_meshes(),
+            self.smooth_solids(),
             self.silhouettes_by_gpu(),
             self.runs(),
             self.visualized(),
@@ -78,6 +79,13 @@ impl VolumeDecisions<'_> {
         let triangles = self.counts.triangles - self.counts.solid_triangles;
         let need = DrawNeed::new(DrawEffect::OpenMeshes, (count > 0).then(Census::default), Reason::Count(count));
         need.with(Uncounted::Prisms(triangles))
+    }
+
+    fn smooth_solids(&self) -> DrawNeed {
+        let is_on = self.any(|light| light.faces.iter().any(|key| key.is_before));
+        self.possible(DrawEffect::SmoothSolids, is_on, |needs| {
+            needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| !key.is_before));
+        })
     }
 
     fn silhouettes_by_gpu(&self) -> DrawNeed {

@@ -43,7 +43,7 @@ impl VolumeRenderer<'_> {
             pass.set_bind_group(0, &self.scene.frame.group, &[]);
             for (draws, is_z_pass) in [(in_front, true), (behind, false)] {
                 for draw in draws {
-                    let key = face_key(extruded, draw.part, VolumeUse::Stencil, is_z_pass);
+                    let key = face_key(extruded, draw, VolumeUse::Stencil, is_z_pass);
                     draw_faces(&mut pass, run, draw, program(VolumeProgram::Faces(key)));
                 }
             }
@@ -132,7 +132,7 @@ impl VolumeRenderer<'_> {
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
         for (run, [in_front, behind]) in extruded.runs.iter().zip(&draws.runs) {
             for draw in in_front.iter().chain(behind) {
-                let key: FaceKey = face_key(extruded, draw.part, of, false);
+                let key: FaceKey = face_key(extruded, draw, of, false);
                 let program = self.programs.get(&VolumeProgram::Faces(key), picture.format);
                 draw_faces(&mut pass, run, draw, program);
             }

@@ -1,6 +1,7 @@
 //! Pipelines of shadow volumes and of point lights.
 
 use super::VolumeRenderer;
+use super::draws::FaceDraw;
 use super::extruded::Extruded;
 use crate::gpu::frame::{
     BatchKey, Output, PipelineState, Program, ProgramKey, STENCIL_FORMAT, ShaderStages, TextureSet, depth_state,
@@ -12,6 +13,8 @@ use sunbake_shaders::{Filter, HardLight, PageVariant, VolumeCorners, VolumeLight
 /// How far faces are moved away from the eye: in steps of depth and, in pixels, along their slope. Rasterisation
 /// moves corners by up to half of a 256th of a pixel, which on slanted faces is a change of depth.
 const BIAS: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -16, slope_scale: -1.0 / 128.0, clamp: 0.0 };
+/// The same towards the eye: caps on back faces.
+const BIAS_BEFORE: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: 16, slope_scale: 1.0 / 128.0, clamp: 0.0 };
 /// Bits of the stencil, where one run counts all.
 const ALL_BITS: u32 = 0xff;
 /// Bits that count a run, where there are several.
@@ -79,6 +82,8 @@ pub struct FaceKey {
     pub is_z_pass: bool,
     /// Whether they are counted in runs.
     pub is_run: bool,
+    /// Whether they are caps on back faces, which are moved towards the eye.
+    pub is_before: bool,
 }
 
 /// How a light is blended with what the picture holds.
@@ -196,7 +201,7 @@ impl VolumeRenderer<'_> {
             VolumeUse::Fill => wgpu::CompareFunction::Always,
         };
         let mut depth_stencil = depth_state(STENCIL_FORMAT, false, compare);
-        depth_stencil.bias = BIAS;
+        depth_stencil.bias = if key.is_before { BIAS_BEFORE } else { BIAS };
         if key.of == VolumeUse::Stencil {
             depth_stencil.stencil = counting(key.is_z_pass, if key.is_run { RUN_BITS } else { ALL_BITS });
         }
@@ -215,17 +220,18 @@ impl VolumeRenderer<'_> {
     }
 }
 
-/// The key of the pipeline that draws a part of a light's volumes.
-pub fn face_key(extruded: &Extruded, part: Part, of: VolumeUse, is_z_pass: bool) -> FaceKey {
+/// The key of the pipeline of a draw of a light's volumes.
+pub fn face_key(extruded: &Extruded, draw: &FaceDraw, of: VolumeUse, is_z_pass: bool) -> FaceKey {
     let (light, corners) = extruded.kind;
     let is_counted = of == VolumeUse::Stencil;
     FaceKey {
         light,
         corners,
-        part,
+        part: draw.part,
         of,
         is_z_pass: is_z_pass && is_counted,
         is_run: extruded.runs.len() > 1 && is_counted,
+        is_before: draw.is_before,
     }
 }
 

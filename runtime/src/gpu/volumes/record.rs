@@ -184,7 +184,7 @@ impl VolumeRenderer<'_> {
     ) {
         let Some(extruded) = &self.extruded[light_index] else { return };
         let faces: Vec<FaceKey> =
-            draws.all().map(|(draw, is_z_pass)| face_key(extruded, draw.part, of, is_z_pass)).collect();
+            draws.all().map(|(draw, is_z_pass)| face_key(extruded, draw, of, is_z_pass)).collect();
         if let Some(light) = self.last.iter_mut().rfind(|light| light.light_index == light_index) {
             light.faces.extend(faces.iter().copied());
         }

@@ -6,7 +6,7 @@ use super::lights::{FrameLight, light_index};
 use super::plan::{LightNeeds, VolumeNeeds};
 use super::programs::{FaceKey, LightBlend, VolumeProgram};
 use super::{VolumeRenderer, caster_buffers};
-use crate::gpu::frame::{FrameTimes, Output, with_pipelines};
+use crate::gpu::frame::{BatchRequest, FrameTimes, Output, with_pipelines};
 use crate::gpu::plan::SceneNeeds;
 use crate::plan::{Census, DrawPlan};
 use crate::stage::Stage;
@@ -154,5 +154,5 @@ pub fn volumes_plan(stage: &Stage, settings: &super::VolumeSettings, output: Out
     let casters = Casters::new(stage);
     let buffers = caster_buffers::size_of(&casters, settings.mode);
     let needs = VolumeNeeds::most(stage, &casters, settings, output, buffers);
-    needs.plan(&SceneNeeds::new(stage, None), &casters.counts, settings)
+    needs.plan(&SceneNeeds::new(stage, BatchRequest::default()), &casters.counts, settings)
 }

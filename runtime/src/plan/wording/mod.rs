@@ -88,6 +88,7 @@ fn possible(effect: DrawEffect) -> &'static str {
         DrawEffect::SunVolumes => "the sun may be up",
         DrawEffect::ZPass => "the eye may be outside of volumes whose caps are hidden",
         DrawEffect::ZFail => "the eye may come into some volume, or a cap show",
+        DrawEffect::SmoothSolids => "some solids are smooth-shaded, and may cast from their back faces",
         DrawEffect::SeveralRuns => "there are more than 255 triangles, which may overlap",
         _ => "something may be in shadow",
     }
@@ -107,6 +108,7 @@ fn of_count(effect: DrawEffect, count: usize) -> String {
         DrawEffect::NormalMaps => ["batch has a normal map", "batches have normal maps"],
         DrawEffect::EmissiveTextures => ["batch has an emissive texture", "batches have emissive textures"],
         DrawEffect::BlendedSurfaces => ["batch is blended", "batches are blended"],
+        DrawEffect::SmoothTerminator => ["batch is smooth-shaded", "batches are smooth-shaded"],
         DrawEffect::DiscLanes => ["lane is in the set", "lanes are in the set"],
         DrawEffect::SeveralLayers => ["layer holds all that is read", "layers hold what is read"],
         DrawEffect::SixteenBitTimes => return format!("times have {count} bits"),

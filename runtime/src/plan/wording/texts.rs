@@ -46,7 +46,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 43] = [
+pub const TEXTS: [EffectText; 44] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -146,6 +146,16 @@ pub const TEXTS: [EffectText; 43] = [
         also_takes: "sorting their triangles each frame",
         off_by: NO_BLEND,
         on_by: "a material of alphaMode BLEND with alpha below 1, or of KHR_materials_transmission",
+        ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::SmoothTerminator,
+        name: "smooth-terminator",
+        why_on: "some surfaces of several faces are smooth-shaded",
+        why_off: "no surface of several faces is smooth-shaded, or the set was baked without regard to it",
+        would_take: "a pipeline a kind of surface; with shadow maps a vertex buffer",
+        off_by: "flat normals, or a set baked with --flat-terminator",
+        on_by: "vertex normals that turn from corner to corner of a triangle",
         ..NONE
     },
     EffectText {
@@ -305,6 +315,16 @@ pub const TEXTS: [EffectText; 43] = [
         off_by: "closing their holes, or --leave-out when baking",
         on_by: "a mesh with a hole",
         ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::SmoothSolids,
+        name: "smooth-solids",
+        why_on: "some solids are smooth-shaded: they cast from their back faces",
+        why_off: "no solid that casts is smooth-shaded",
+        would_take: "a pipeline for caps on back faces, and z-fail for such solids",
+        also_takes: "z-fail for such solids",
+        off_by: "flat normals, or a set baked with --flat-terminator",
+        on_by: "a closed mesh whose normals turn from corner to corner of a triangle",
     },
     EffectText {
         effect: DrawEffect::SilhouettesByGpu,

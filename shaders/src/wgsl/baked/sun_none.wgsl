@@ -1,4 +1,4 @@
 // No sun: nothing is read.
-fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
+fn sun_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
     return 0.0;
 }

@@ -3,6 +3,6 @@
 fn lamp_visibility_fragment(varyings: Varyings) -> @location(0) vec4<f32> {
     test_alpha(varyings);
     let ray = view_ray(varyings.clip.xy);
-    let geometric_normal = towards_eye(varyings.front_normal, varyings, ray);
-    return vec4<f32>(lamp_visibility(varyings.page_uv, geometric_normal, to_lamp_from(varyings, ray)), 0.0, 0.0, 1.0);
+    let gate = gate_normal(varyings, ray);
+    return vec4<f32>(lamp_visibility(varyings.page_uv, gate, to_lamp_from(varyings, ray)), 0.0, 0.0, 1.0);
 }

@@ -1,11 +1,11 @@
 // The visible share of the sun's disc from shadow maps, at most the share that is above the surface's plane and the
 // horizon.
-fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
-    let height = min(dot(geometric_normal, frame.sun_direction), frame.sun_direction.y);
+fn sun_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
+    let height = min(dot(gate, frame.sun_direction), frame.sun_direction.y);
     let disc_share = clamp(0.5 + height * frame.inverse_angular_diameter, 0.0, 1.0);
     if disc_share <= 0.0 {
         return 0.0;
     }
-    let from_eye_m = view_ray(varyings.clip.xy) / varyings.clip.w;
-    return min(disc_share, shadow_visibility(from_eye_m, geometric_normal, varyings.clip.xy));
+    let place = receiver_place(varyings, gate);
+    return min(disc_share, shadow_visibility(place.from_eye_m, place.normal, varyings.clip.xy));
 }

@@ -2,8 +2,8 @@
 @group(3) @binding(3) var shadow_mask: texture_2d<f32>;
 @group(3) @binding(4) var mask_sampler: sampler;
 
-fn sun_visibility(varyings: Varyings, geometric_normal: vec3<f32>) -> f32 {
-    if dot(geometric_normal, frame.sun_direction) <= 0.0 {
+fn sun_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
+    if dot(gate, frame.sun_direction) <= 0.0 {
         return 0.0;
     }
     let place = place_on_map(0, view_ray(varyings.clip.xy) / varyings.clip.w);

@@ -7,7 +7,8 @@ struct Surface {
     metallic: f32,
     roughness: f32,
     emitted: vec3<f32>,
-    geometric_normal: vec3<f32>,
+    // Decides whether the surface faces the light.
+    gate: vec3<f32>,
     normal: vec3<f32>,
 }
 
@@ -18,7 +19,7 @@ fn surface_at(varyings: Varyings) -> Surface {
     let opacity = opacity_of(base_color.a, material);
     let metal = metallic_roughness(varyings, ray, material);
     let emitted = emitted_light(varyings, ray, material);
-    let geometric_normal = towards_eye(varyings.front_normal, varyings, ray);
+    let gate = gate_normal(varyings, ray);
     let normal = towards_eye(shading_normal(varyings, ray, material), varyings, ray);
-    return Surface(ray, material, base_color.rgb, opacity, metal.x, metal.y, emitted, geometric_normal, normal);
+    return Surface(ray, material, base_color.rgb, opacity, metal.x, metal.y, emitted, gate, normal);
 }
