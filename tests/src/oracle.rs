@@ -195,7 +195,7 @@ impl Shape {
             let corners = here.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
             met(&corners, start, along)?;
             let plane = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-            here.geometry.is_solid(&here.scene, triangle).then(|| plane.dot(corners[0] - start) / plane.dot(along))
+            here.geometry.casts(&here.scene, triangle).then(|| plane.dot(corners[0] - start) / plane.dot(along))
         });
         lift * hits.fold(1.0, |share: f64, distance| share.min(0.5 * distance / lift.length()))
     }

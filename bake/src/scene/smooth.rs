@@ -71,7 +71,7 @@ impl SmoothTriangles {
         let mut found = Self::default();
         for (index, instance) in scene.instances.iter().enumerate() {
             let mesh = &scene.meshes[instance.mesh];
-            let Some(normals) = mesh.normals.as_ref().filter(|_| geometry.is_solid_instance(scene, index)) else {
+            let Some(normals) = mesh.normals.as_ref().filter(|_| scene.is_there(index)) else {
                 continue;
             };
             let normals: Vec<DVec3> = normals.iter().map(|normal| turn.turned(index, *normal)).collect();
