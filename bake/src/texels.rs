@@ -4,7 +4,7 @@
 use crate::atlas::{self, Sample};
 use crate::disk::read::BakedSet;
 use crate::maps::{AmbientSide, Bits, LaneMaps, decode_share, decode_signed, stored_intervals};
-use crate::scene::{Geometry, LoadError, LoadLimits};
+use crate::scene::{LoadError, LoadLimits};
 use crate::trace::Tracer;
 use crate::visibility::{BuriedPoints, SurfaceSide, ray_starts};
 use glam::DVec3;

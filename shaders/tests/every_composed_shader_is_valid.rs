@@ -40,6 +40,8 @@ fn looks() -> Vec<SurfaceVariant> {
         is_textured: bits & 5 != 0,
         has_vertex_color: bits & 6 == 6,
         has_alpha_mask: bits & 17 == 1,
+        is_smooth: bits & 4 != 0,
+        has_lift: bits & 12 == 12,
         look: of_bits(bits),
     };
     (0..32).filter(|bits| bits & 3 != 3).map(surface).collect()

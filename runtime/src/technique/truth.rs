@@ -120,7 +120,8 @@ impl ShadowRays {
         };
         let with_origin = |start: RayStart| (start, start.origin_m(stage.tracer(), &point));
         let starts = ray_starts(&point).into_iter().map(with_origin).collect();
-        Self { point, on_plane_m: geometry.triangles[triangle][0].as_dvec3(), starts }
+        let is_open = !stage.scene.receives(geometry.instance[triangle] as usize);
+        Self { point, on_plane_m: geometry.triangles[triangle][0].as_dvec3(), starts, is_open }
     }
 
     /// Where a ray along a direction starts; none where the surface faces away.

@@ -46,7 +46,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 44] = [
+pub const TEXTS: [EffectText; 45] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
