@@ -7,6 +7,7 @@ mod darkness;
 mod kept;
 mod occluders;
 mod read_right;
+mod surfaces;
 mod tools;
 
 use libtest_mimic::{Arguments, Trial};
@@ -46,7 +47,7 @@ impl Row {
 
 /// All rows, by case.
 fn rows() -> Vec<&'static Row> {
-    let files = [occluders::ROWS, darkness::ROWS, kept::ROWS, read_right::ROWS];
+    let files = [occluders::ROWS, darkness::ROWS, kept::ROWS, read_right::ROWS, surfaces::ROWS];
     let mut rows: Vec<&'static Row> = files.into_iter().flatten().collect();
     rows.sort_by_key(|row| row.case);
     rows
