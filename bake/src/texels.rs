@@ -31,7 +31,8 @@ pub struct Texel {
     pub origin: [f64; 3],
     /// Origin of rays towards suns behind the plane, if they count; world space, metres.
     pub origin_back: Option<[f64; 3]>,
-    /// Unit shading normal, world space, of a smooth surface. Suns count that are in front of it, in place of the plane.
+    /// Unit shading normal, world space, of a smooth surface. Suns count that are in front of it, in place of the
+    /// plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading_normal: Option<[f64; 3]>,
     /// Origin of rays towards suns in front of the shading normal and behind the plane, if there are such rays; world

@@ -114,8 +114,8 @@ pub struct ColorVertex {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct LiftVertex {
-    /// The vectors that the triangle's edges bulge by, metres, the same at its three corners: of the edge from its first
-    /// corner to the second,
+    /// The vectors that the triangle's edges bulge by, metres, the same at its three corners: of the edge from its
+    /// first corner to the second,
     pub first_lift_m: [f32; 3],
     /// from the second to the third,
     pub second_lift_m: [f32; 3],

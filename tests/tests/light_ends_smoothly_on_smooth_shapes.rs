@@ -3,12 +3,13 @@
 
 use glam::{DMat4, DVec3, Vec2, Vec3};
 use std::f64::consts::PI;
+use sunbake::lamp::{LampKey, LampPath};
 use sunbake::progress::Silent;
 use sunbake::scene::{Geometry, Material, Mesh, Scene};
 use sunbake::settings::BakeSettings;
 use sunbake::sun::SunPath;
 use sunbake::testing::{SceneBuilder, ball, block, floor, icosphere, opaque, turned_over};
-use sunbake::visibility::{ExactEngine, Intervals, lit_at};
+use sunbake::visibility::{Engine, ExactEngine, Intervals, LampEngine, LampRays, lit_at};
 use sunbake_tests::{Traced, over_the_top, quick};
 
 /// Points of a triangle at which light is looked for: weights of its second and third corner.
@@ -67,6 +68,36 @@ fn b19_the_terminator_of_few_faces_is_that_of_the_sphere() {
     }
 }
 
+/// A lamp's light ends on a ball where it ends on a sphere too, and both of its engines say so.
+#[test]
+fn b19_a_lamps_light_ends_as_on_the_sphere() {
+    let here = Traced::new(one(ball(12, 8, Vec3::ZERO, 1.0), opaque()).build());
+    let key = |t, x| LampKey { t, position_m: DVec3::new(x, 2.0, 0.7) };
+    let path = LampPath::new(vec![key(0.0, -4.0), key(1.0, 4.0)], 0.0, 60.0).expect("a path");
+    let (exact, rays) = (LampEngine::new(&here.tracer, &path), LampRays::new(&here.tracer, &path, 512));
+    let mut lit_below = 0;
+    for triangle in 0..here.geometry.triangles.len() {
+        for weights in INSIDE {
+            let point = here.point(triangle, weights);
+            let [exact, rays] = [&exact as &dyn Engine, &rays].map(|engine| lit_at(engine, &point).swap_remove(0));
+            let smooth = point.smooth.expect("a ball is smooth");
+            let (normal, rise) = (smooth.normal, smooth.lift_m[0].length());
+            for step in 0..512 {
+                let t = (f64::from(step) + 0.5) / 512.0;
+                let is_lit = |lit: &Intervals| lit.as_slice().iter().any(|[start, end]| (*start..=*end).contains(&t));
+                let to_lamp = path.position_m(t) - point.position_m;
+                assert_eq!(is_lit(&exact), is_lit(&rays), "{triangle} {weights:?} at {t}");
+                // A lamp is near, so that what rises above a facet sees less of it.
+                let height = normal.dot(to_lamp);
+                let is_unsure = height > 0.0 && height < rise;
+                assert!(is_unsure || is_lit(&exact) == (height > 0.0), "{triangle} {weights:?} at {t}");
+                lit_below += u32::from(is_lit(&exact) && point.normal.dot(to_lamp) < 0.0);
+            }
+        }
+    }
+    assert!(lit_below > 1000, "{lit_below}");
+}
+
 /// A bowl of few faces, of which the inside is seen, has no more error than it had.
 #[test]
 fn b19_the_inside_of_a_bowl_is_no_worse() {
@@ -78,7 +109,8 @@ fn b19_the_inside_of_a_bowl_is_no_worse() {
     };
     let path = over_the_top(DVec3::X);
     let [smooth, faceted] = [Traced::new(half(12, 8)), Traced::faceted(half(12, 8))];
-    // In closed form: the sun at d reaches p in a bowl of radius 1 unless the chord from p towards d ends below the rim.
+    // In closed form: the sun at d reaches p in a bowl of radius 1 unless the chord from p towards d ends below the
+    // rim.
     let centre = DVec3::Y * smooth.scene.centre_m.y;
     let is_seen = |p: DVec3, d: DVec3| (p - d * (2.0 * p.dot(d))).y >= 0.0;
     let error = |here: &Traced| {
@@ -190,8 +222,8 @@ fn b19_a_ball_on_the_ground_lets_no_light_under_it() {
     }
 }
 
-/// Grass on a hill of few faces is lower than the smooth hill rises above them: its shadow stays, where the hill's faces
-/// see the sun.
+/// Grass on a hill of few faces is lower than the smooth hill rises above them: its shadow stays, where the hill's
+/// faces see the sun.
 #[test]
 fn b19_small_things_on_large_facets_keep_their_shadows() {
     let hill = ball(12, 8, Vec3::ZERO, 10.0);

@@ -31,7 +31,8 @@ impl Manifest {
         scene.turn_into_air(&left_out);
     }
 
-    /// The triangles of the set's scene, as the set was baked: with or without the smooth shapes of which they are facets.
+    /// The triangles of the set's scene, as the set was baked: with or without the smooth shapes of which they are
+    /// facets.
     pub fn geometry(&self, scene: &Scene) -> Geometry {
         match self.has_effect(SMOOTH_TERMINATOR) {
             true => Geometry::new(scene),

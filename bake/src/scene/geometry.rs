@@ -111,8 +111,8 @@ impl Geometry {
     }
 
     /// For the edges of a smooth triangle, from each corner to the next, the vector that its bulge is made of:
-    /// a point with weights a, b and c moves by `ab` times the first, `bc` times the second and `ca` times the third, of
-    /// those that point to the side that is seen.
+    /// a point with weights a, b and c moves by `ab` times the first, `bc` times the second and `ca` times the third,
+    /// of those that point to the side that is seen.
     pub fn edge_lifts_m(&self, triangle: usize) -> Option<[DVec3; 3]> {
         let normals = self.smooth.normals(triangle)?;
         Some(smooth::edge_lifts(&self.triangles[triangle].map(|corner| corner.as_dvec3()), &normals))

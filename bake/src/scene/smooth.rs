@@ -2,10 +2,10 @@
 //!
 //! Theory: a smooth-shaded ball of few faces shows its facets wherever light depends on the faces: a face that turns
 //! away from the sun is dark, though its shading normals still see the sun, and rays that start on it meet the ball
-//! itself. Phong tessellation (Boubekeur and Alexa, *ACM Transactions on Graphics* 27(5), 2008) lays a curved patch over
-//! each triangle: a point P goes to the mean, by its weights b, of its projections onto the corners' tangent planes.
-//! Hanika ("Hacking the shadow terminator", *Ray Tracing Gems II*, chapter 4, 2021) starts shadow rays on that patch.
-//! Multiplied out, with corners V and their normals n, it is a vector for each edge:
+//! itself. Phong tessellation (Boubekeur and Alexa, *ACM Transactions on Graphics* 27(5), 2008) lays a curved patch
+//! over each triangle: a point P goes to the mean, by its weights b, of its projections onto the corners' tangent
+//! planes. Hanika ("Hacking the shadow terminator", *Ray Tracing Gems II*, chapter 4, 2021) starts shadow rays on that
+//! patch. Multiplied out, with corners V and their normals n, it is a vector for each edge:
 //!
 //! ```text
 //! P' = P + sum over edges ij of b_i b_j lift_ij,    lift_ij = ((V_i - V_j) . n_i) n_i + ((V_j - V_i) . n_j) n_j
@@ -17,14 +17,14 @@
 //! Departures:
 //!
 //! * Hanika leaves out the part of a corner that would go inwards; here a whole edge either bulges to the side that is
-//!   seen, or is left out. So both sides of a sheet share the vectors, and normals that are alike but not the triangle's
-//!   (as artists give to leaves) lift nothing.
+//!   seen, or is left out. So both sides of a sheet share the vectors, and normals that are alike but not the
+//!   triangle's (as artists give to leaves) lift nothing.
 //! * [`crate::visibility::RayStart`] says which rays start there: only those to lights that the shading normal sees and
 //!   the face does not. Other points stay, so that small things on large faces keep their shadows.
 //! * Not every triangle with normals is a facet of something smooth. Where normals turn by less than half a degree
-//!   ([`ALIKE_COSINE`]) a facet's terminator lies where the light is below a hundredth, and where they lean more than 40
-//!   degrees from the face ([`LEAST_COSINE`]) the shape has edges there, as a box has whose normals were averaged. Both
-//!   count as flat, and nothing about them changes.
+//!   ([`ALIKE_COSINE`]) a facet's terminator lies where the light is below a hundredth, and where they lean more than
+//!   40 degrees from the face ([`LEAST_COSINE`]) the shape has edges there, as a box has whose normals were averaged.
+//!   Both count as flat, and nothing about them changes.
 
 use super::{Geometry, Scene, ShadingNormals};
 use glam::{DVec3, Vec3};
@@ -51,8 +51,8 @@ pub(super) struct SmoothTriangles {
 pub struct SmoothPoint {
     /// Unit shading normal, on the front.
     pub normal: DVec3,
-    /// From the point to the smooth shape, in metres, as the front shows it and as the back does. Zero where that side is
-    /// hollow.
+    /// From the point to the smooth shape, in metres, as the front shows it and as the back does. Zero where that side
+    /// is hollow.
     pub lift_m: [DVec3; 2],
 }
 

@@ -124,7 +124,8 @@ impl Tracer {
         point_m + side * lift_m + inwards.clamp_length_max(lift_m)
     }
 
-    /// The origin of a shadow ray from a point that shading normals move by `lift_m`: see [`crate::scene::SmoothPoint`].
+    /// The origin of a shadow ray from a point that shading normals move by `lift_m`: see
+    /// [`crate::scene::SmoothPoint`].
     pub fn lift_smooth(&self, point_m: DVec3, side: DVec3, triangle: u32, lift_m: DVec3) -> DVec3 {
         self.lift(point_m, side, triangle) + lift_m * self.free_share(point_m, side, triangle, lift_m)
     }

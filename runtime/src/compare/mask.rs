@@ -8,8 +8,8 @@
 //!   for the picture to show, or between surfaces closer together than that along the line of sight.
 //! * **Other surfaces.** Rasterising shows another surface than a ray hits (at a silhouette, or through a crack between
 //!   triangles that do not share their corners), and the mask is right about that surface.
-//! * **Turned facets.** A smooth surface faces the light there and its facet does not. Rays start above the facet, where
-//!   a technique that rasterises may not: shadow volumes of open meshes leave it dark.
+//! * **Turned facets.** A smooth surface faces the light there and its facet does not. Rays start above the facet,
+//!   where a technique that rasterises may not: shadow volumes of open meshes leave it dark.
 //!
 //! The first three no rasterising technique can avoid.
 

@@ -33,8 +33,8 @@ pub struct Facings {
     /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside
     /// none of them.
     pub is_solid: Vec<bool>,
-    /// For each caster, whether it casts from its back faces instead: a smooth solid. Light then ends on it where shading
-    /// normals say, since the space between its front and its back faces is no part of its volume.
+    /// For each caster, whether it casts from its back faces instead: a smooth solid. Light then ends on it where
+    /// shading normals say, since the space between its front and its back faces is no part of its volume.
     pub is_from_behind: Vec<bool>,
 }
 

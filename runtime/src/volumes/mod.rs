@@ -20,13 +20,13 @@
 //! added: every face is moved away from the eye by a little more than rasterising can misplace it, so that surfaces do
 //! not shade themselves, nor the surfaces on which they lie.
 //!
-//! **Smooth solids.** Light ends on a smooth surface where its shading normals say ([`sunbake::scene::SmoothPoint`]), and
-//! not face by face. The usual volume of a solid starts at its front faces, and holds all faces that turn away. So
+//! **Smooth solids.** Light ends on a smooth surface where its shading normals say ([`sunbake::scene::SmoothPoint`]),
+//! and not face by face. The usual volume of a solid starts at its front faces, and holds all faces that turn away. So
 //! smooth solids cast from their back faces, as in second-depth shadow mapping (Wang and Molnar, "Second-depth shadow
-//! mapping", 1994): the same shadow on all else. Their caps are moved towards the eye, before the faces that they lie on;
-//! those then are as little in their own volume as the inside of the solid is. The shading normal alone tells where
-//! they face the light. Open meshes have no inside: they cast from every triangle, and their facets stay dark where they
-//! turn away.
+//! mapping", 1994): the same shadow on all else. Their caps are moved towards the eye, before the faces that they lie
+//! on; those then are as little in their own volume as the inside of the solid is. The shading normal alone tells where
+//! they face the light. Open meshes have no inside: they cast from every triangle, and their facets stay dark where
+//! they turn away.
 //!
 //! **What it does not do.** Alpha masks are ignored: a leaf casts the shadow of its whole card. Lights have no size:
 //! soft edges take many lights.

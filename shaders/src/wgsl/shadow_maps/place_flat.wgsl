@@ -1,9 +1,4 @@
-// What of a surface is compared with shadow maps, relative to the eye, and the normal of its plane.
-struct ReceiverPlace {
-    from_eye_m: vec3<f32>,
-    normal: vec3<f32>,
-}
-
-fn receiver_place(varyings: Varyings, gate: vec3<f32>) -> ReceiverPlace {
-    return ReceiverPlace(view_ray(varyings.clip.xy) / varyings.clip.w, gate);
+// What maps say of a surface: of its place and its plane.
+fn place_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
+    return shadow_visibility(view_ray(varyings.clip.xy) / varyings.clip.w, gate, varyings.clip.xy);
 }

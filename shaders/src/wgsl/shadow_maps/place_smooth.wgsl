@@ -1,9 +1,5 @@
-// What of a facet is compared with shadow maps, relative to the eye, and the normal of its plane: the facet itself where
-// it faces the sun, else the smooth shape above it. Twin of bake/src/scene/smooth.rs and bake/src/visibility/start.rs.
-struct ReceiverPlace {
-    from_eye_m: vec3<f32>,
-    normal: vec3<f32>,
-}
+// What maps say of a facet: of its place and its plane where it faces the sun, else of the smooth shape above it. Twin
+// of bake/src/scene/smooth.rs and bake/src/visibility/start.rs.
 
 // The vector of an edge, if it bulges to the side that is seen.
 fn rising(edge_lift: vec3<f32>, side: vec3<f32>) -> vec3<f32> {
@@ -20,12 +16,17 @@ fn lift(varyings: Varyings, side: vec3<f32>) -> vec3<f32> {
         + rising(varyings.third_lift_m, side) * (third * first);
 }
 
-fn receiver_place(varyings: Varyings, gate: vec3<f32>) -> ReceiverPlace {
+fn place_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
     let ray = view_ray(varyings.clip.xy);
     let from_eye_m = ray / varyings.clip.w;
     let face = towards_eye(varyings.front_normal, varyings, ray);
     if dot(face, frame.sun_direction) > 0.0 {
-        return ReceiverPlace(from_eye_m, face);
+        return shadow_visibility(from_eye_m, face, varyings.clip.xy);
     }
-    return ReceiverPlace(from_eye_m + lift(varyings, face), gate);
+    let rise_m = lift(varyings, face);
+    if all(rise_m == vec3<f32>(0.0)) {
+        // Where the shape is hollow the facet is in the way.
+        return 0.0;
+    }
+    return shadow_visibility(from_eye_m + rise_m, gate, varyings.clip.xy);
 }

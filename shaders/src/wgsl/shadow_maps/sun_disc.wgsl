@@ -6,6 +6,5 @@ fn sun_visibility(varyings: Varyings, gate: vec3<f32>) -> f32 {
     if disc_share <= 0.0 {
         return 0.0;
     }
-    let place = receiver_place(varyings, gate);
-    return min(disc_share, shadow_visibility(place.from_eye_m, place.normal, varyings.clip.xy));
+    return min(disc_share, place_visibility(varyings, gate));
 }
