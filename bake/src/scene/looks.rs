@@ -59,8 +59,8 @@ pub struct Look {
 /// How a mesh looks.
 #[derive(Debug, Clone, Default)]
 pub struct MeshLook {
-    /// Whether it is blended with what lies behind: some of it is seen through. To shadows, what is at least half opaque
-    /// is solid.
+    /// Whether it is blended with what lies behind: some of it is seen through. To shadows, what is at least half
+    /// opaque is solid.
     pub is_blended: bool,
     /// For each vertex, the file's unit tangent in object space, and 1 or -1: the bitangent is the cross product of
     /// normal and tangent, times that. None where there is no normal map, or the file has no tangents for it.

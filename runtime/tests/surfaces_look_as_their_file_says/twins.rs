@@ -80,7 +80,10 @@ fn stage() -> Stage {
         "bumps" => Look { roughness: 0.5, normal_texture: Some(tiled(1, Wrap::Mirror)), ..Look::PLAIN },
         "sign" => Look { emissive_texture: Some(tiled(2, Wrap::Clamp)), ..Look::PLAIN },
         "pane" => Look { says_blend: true, ..Look::PLAIN },
-        _ => Look { transmission: 0.6, roughness: 0.3, normal_texture: mapped, normal_scale: 0.3, ..Look::PLAIN },
+        _ => {
+            let normal_texture = Some(tiled(1, Wrap::Repeat));
+            Look { transmission: 0.6, roughness: 0.3, normal_texture, normal_scale: 0.3, ..Look::PLAIN }
+        }
     };
     let stage = bake(with_clear_panes(scene()), Some(equinox(35.0)), 12, Bits::Sixteen);
     let stage = with_lamp(stage, &lamp_at(DVec3::new(0.5, 3.0, 1.5)), 12);
