@@ -49,8 +49,8 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let facing = max(dot(geometric_normal, sun), 1.0 / 4096.0);
     let raster_m = corner_m / 128.0 + length(from_eye_m) * (frame.pixel_angle_rad / 256.0 + ROUNDING);
     let is_grazed = BIAS_HAS_PLANE && facing < LEAST_PLANE_COS;
-    let normal_share = select(BIAS_NORMAL, max(BIAS_NORMAL, 1.0), is_grazed);
-    let off_surface_m = normal_share * BIAS_REACH * corner_m + raster_m;
+    let reach = select(BIAS_NORMAL * BIAS_REACH, BIAS_REACH_WITHOUT_PLANE, is_grazed);
+    let off_surface_m = reach * corner_m + raster_m;
     let towards_sun_m = BIAS_CONSTANT_M + BIAS_CONSTANT_TEXELS * texel_m + BIAS_SLOPE * BIAS_REACH * corner_m / facing;
     let unbiased_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m;
     let point_m = unbiased_m + geometric_normal * off_surface_m + sun * towards_sun_m;
