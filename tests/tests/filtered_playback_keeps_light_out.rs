@@ -168,8 +168,8 @@ fn random_closed_rooms_are_dark_in_filtered_playback() {
     assert!(leaked > 8, "without walls in the maps only {leaked} of 24 rooms leak: the test sees nothing");
 }
 
-/// B6 and B21: no dark line runs along the sunny side of what lies or stands on the ground, although the ground below never
-/// sees the sun: a decal, a kerb that is lower than a texel, a stone.
+/// B6 and B21: no dark line runs along the sunny side of what lies or stands on the ground, although the ground below
+/// never sees the sun: a decal, a kerb that is lower than a texel, a stone.
 #[test]
 fn no_dark_line_runs_round_what_lies_on_the_ground() {
     let [low, high] = [Vec3::new(-1.03, 0.0, -0.47), Vec3::new(1.31, 0.0, 0.58)];

@@ -6,8 +6,8 @@
 //! front of it must not leak into the room behind. Texels deeper inside stay 0.
 //!
 //! Nor of one behind a wall ([`crate::atlas::find_walls`]), which filters leave out: a room without inner faces is a
-//! solid to the test, and nothing would be darker than outside. Viewers blend across walls, so for them such texels take
-//! what lies behind.
+//! solid to the test, and nothing would be darker than outside. Viewers blend across walls, so for them such texels
+//! take what lies behind.
 
 use crate::atlas::{Around, PageSize};
 use std::collections::BTreeSet;

@@ -17,8 +17,8 @@ use std::collections::HashMap;
 const PULL: f64 = 0.125;
 
 /// For each instance, the ambient visibility of each vertex of its mesh, 0 to 1; of double-sided surfaces, that of the
-/// side with more. Instances that take no shadows have 1. `on_progress` gets the number of positions that were done and returns
-/// false to stop; then there is no answer. The second value is the number of rays traced.
+/// side with more. Instances that take no shadows have 1. `on_progress` gets the number of positions that were done and
+/// returns false to stop; then there is no answer. The second value is the number of rays traced.
 pub fn ambient_visibility_of_vertices(
     engine: &AmbientEngine,
     scene: &Scene,

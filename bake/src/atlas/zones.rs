@@ -36,8 +36,8 @@ impl Zones {
         self.0.is_empty()
     }
 
-    /// For each triangle of an instance's mesh, the density that the zones it reaches into ask for, if that is more than
-    /// the instance's own.
+    /// For each triangle of an instance's mesh, the density that the zones it reaches into ask for, if that is more
+    /// than the instance's own.
     pub fn densities(&self, scene: &Scene, instance: usize) -> Vec<Option<f64>> {
         let instance = &scene.instances[instance];
         let own = instance.role.texels_per_metre.unwrap_or(0.0);

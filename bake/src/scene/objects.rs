@@ -57,7 +57,10 @@ pub enum ObjectError {
         known: String,
     },
     /// All that the name names is left out.
-    #[error("{name:?} is left out of the scene, so there is nothing to {}; take one of the two wishes back", wish.verb())]
+    #[error(
+        "{name:?} is left out of the scene, so there is nothing to {}; take one of the two wishes back",
+        wish.verb()
+    )]
     LeftOut {
         /// What was wanted.
         wish: Wish,

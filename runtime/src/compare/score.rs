@@ -3,9 +3,9 @@
 //! Only pixels that show a surface count; otherwise the mean would depend on how much sky a camera sees. The *penumbra*
 //! is where the reference is neither lit nor dark; an error outside of it is a shadow in the wrong place, or a missing
 //! one. *False light* is what shines through walls, where the reference is all dark; *false shade* darkens what it
-//! shows in full light. Structural similarity (Wang et al., "Image quality assessment: from error visibility to structural similarity",
-//! *IEEE Transactions on Image Processing* 13, 2004) is taken of the lit pictures' luma as a display shows them, over
-//! windows of eight by eight pixels. NaN counts as an error of 1, and such pixels are counted.
+//! shows in full light. Structural similarity (Wang et al., "Image quality assessment: from error visibility to
+//! structural similarity", *IEEE Transactions on Image Processing* 13, 2004) is taken of the lit pictures' luma as a
+//! display shows them, over windows of eight by eight pixels. NaN counts as an error of 1, and such pixels are counted.
 
 use crate::image::Raster;
 use crate::light::{LUMINANCE, codes_from_display, display_from_light};

@@ -1,7 +1,7 @@
 //! The cases from the field, one row a case: what must hold, and what was found.
 //!
-//! Each row is a test of its own. With the option `--table`, as `tests/run cases` gives it, all rows are run and printed
-//! as a table; the exit code is 1 if one does not hold. The files are in `tests/cases`.
+//! Each row is a test of its own. With the option `--table`, as `tests/run cases` gives it, all rows are run and
+//! printed as a table; the exit code is 1 if one does not hold. The files are in `tests/cases`.
 
 mod darkness;
 mod kept;

@@ -171,8 +171,8 @@ fn a_bench_casts_its_shadow() -> Found {
     Ok(text)
 }
 
-/// Mean error of the sun's visibility at ten times of day on ground within 1.5 m of the middle, and the share of it that
-/// truth finds dark.
+/// Mean error of the sun's visibility at ten times of day on ground within 1.5 m of the middle, and the share of it
+/// that truth finds dark.
 fn ground_error(stage: &sunbake_runtime::stage::Stage) -> [f64; 2] {
     use sunbake::trace::Direction;
     let path = stage.path.clone().expect("a sun");

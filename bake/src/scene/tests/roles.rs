@@ -83,7 +83,8 @@ fn what_transmits_or_blends_is_clear_unless_extras_say_otherwise() {
     assert_eq!(of_material(json!({ "extensions": transmitting(0.2) })), (true, true, true));
     let opaque = json!({ "extensions": transmitting(0.9), "extras": { "sunbake_no_cast": false } });
     assert_eq!(of_material(opaque), (true, true, false));
-    let blended = |alpha: f64| json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": { "baseColorFactor": [1.0, 1.0, 1.0, alpha] } });
+    let color = |alpha: f64| json!({ "baseColorFactor": [1.0, 1.0, 1.0, alpha] });
+    let blended = |alpha: f64| json!({ "alphaMode": "BLEND", "pbrMetallicRoughness": color(alpha) });
     assert_eq!(of_material(blended(0.3)), (true, false, false));
     assert_eq!(of_material(blended(0.8)), (true, true, true));
     assert_eq!(of_material(blended(0.0)), (false, false, false));

@@ -67,8 +67,8 @@ fn source(args: &CompareArgs) -> Result<CompareSource, Failure> {
     if args.sun.is_given() || args.page_size.is_some() || args.objects.is_given() || args.densities.is_given() {
         return Err(Failure::usage(
             "a set has the sun, the texels and the objects that it was baked with: leave --place, --date, \
-             --utc-offset, --north, --page-size, --leave-out, --no-cast, --no-receive and --density out, or compare the \
-             scene",
+             --utc-offset, --north, --page-size, --leave-out, --no-cast, --no-receive and --density out, or compare \
+             the scene",
         ));
     }
     Ok(CompareSource::Set { folder: from.clone(), scene: args.scene.clone() })

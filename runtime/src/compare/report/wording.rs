@@ -9,7 +9,8 @@ impl Report {
     pub fn text(&self) -> String {
         let name = self.techniques.iter().map(|technique| technique.name.len()).max().unwrap_or(0).max(9);
         let mut text = format!(
-            "{} against {}, {} frames of {}x{}, on {}\n\n{:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
+            "{} against {}, {} frames of {}x{}, on {}\n\n\
+             {:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
             self.scene.name,
             self.reference.name,
             self.cameras.len() * self.times.len(),
