@@ -56,8 +56,6 @@ pub struct ShadowBias {
     pub normal: f32,
     /// The reach, in texels.
     pub reach: f32,
-    /// The reach where the sun grazes the receiver, which is not compared with its plane then, in texels.
-    pub reach_without_plane: f32,
     /// Whether texels are compared with the receiver's plane at their own centre.
     pub has_plane: bool,
 }
@@ -150,7 +148,6 @@ fn push_sun(text: &mut String, surface: SurfaceVariant, sun: &ShadowSource) {
                 slope: 0.0,
                 normal: 0.0,
                 reach: 0.0,
-                reach_without_plane: 0.0,
                 has_plane: false,
             };
             push_receiver(text, &bias, 0.0);
@@ -190,7 +187,6 @@ fn push_receiver(text: &mut String, bias: &ShadowBias, margin_texels: f32) {
         ("BIAS_SLOPE", bias.slope),
         ("BIAS_NORMAL", bias.normal),
         ("BIAS_REACH", bias.reach),
-        ("BIAS_REACH_WITHOUT_PLANE", bias.reach_without_plane),
         ("MAP_MARGIN_TEXELS", margin_texels),
     ];
     // Writing to a string cannot fail.

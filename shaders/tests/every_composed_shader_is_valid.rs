@@ -81,7 +81,6 @@ fn shadow_sources() -> Vec<ShadowSource> {
                     slope: 0.0,
                     normal: 1.0,
                     reach: 1.0,
-                    reach_without_plane: 2.5,
                     has_plane: choice == ShadowMapChoice::One,
                 };
                 all.push(ShadowSource::Maps { filter, tap, choice, bias, margin_texels: 4.0 });

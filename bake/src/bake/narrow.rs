@@ -1,7 +1,7 @@
 //! Objects that are too small for their texels.
 
 use crate::atlas::Atlas;
-use crate::scene::{Scene, label_of};
+use crate::scene::{Scene, each_once, label_of};
 use crate::warning::Warning;
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ pub(super) fn narrow_warning(scene: &Scene, atlas: &Atlas) -> Option<Warning> {
     let label = |&(_, instance): &(f64, usize)| label_of(scene, &BTreeSet::from([instance as u32])).1;
     Some(Warning::Narrow {
         count: narrow.len(),
-        objects: narrow.iter().take(MOST_NAMED).map(label).collect(),
+        objects: each_once(narrow.iter().take(MOST_NAMED).map(label).collect()),
         texel_m: texel_m(least),
         texels_per_metre: GOOD_TEXELS / least_m.max(1e-6),
     })

@@ -30,7 +30,7 @@ const SUNS: usize = 8;
 const MOST_NAMED: usize = 5;
 
 /// Words in the names of what should not cast shadows.
-const TELLING_WORDS: [&str; 22] = [
+const TELLING_WORDS: [&str; 20] = [
     "sky",
     "skydome",
     "skybox",
@@ -43,12 +43,10 @@ const TELLING_WORDS: [&str; 22] = [
     "water",
     "ocean",
     "outline",
-    "hull",
     "collision",
     "collider",
-    "col",
     "colonly",
-    "convcol",
+    "convcolonly",
     "ucx",
     "ubx",
     "usp",
@@ -292,6 +290,7 @@ mod tests {
             ("Water.002", true),
             ("Skylight", false),
             ("column", false),
+            ("canopy_col_2", false),
             ("whisky", false),
             ("", false),
         ] {

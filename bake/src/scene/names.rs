@@ -81,7 +81,7 @@ pub(crate) fn label_of(scene: &Scene, instances: &BTreeSet<u32>) -> (String, Str
     let names = kinds.clone().filter_map(by_name);
     let all: Vec<(String, String)> = names.chain(kinds.filter_map(by_index)).collect();
     let selecting = all.iter().find(|(_, text)| Selection::new(scene, text).all_instances(scene) == *instances);
-    selecting.or(all.last()).cloned().unwrap_or_default()
+    selecting.or(all.first()).cloned().unwrap_or_default()
 }
 
 /// Names that a scene's parts have, each once: of materials, of nodes that draw, of meshes.

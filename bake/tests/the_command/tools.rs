@@ -34,10 +34,13 @@ impl Run {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("stdout is no JSON: {e}\n{}", self.stdout))
     }
 
-    /// Checks that it failed with this code and one line on stderr, which holds these words.
+    /// Checks that it failed with this code and one line on stderr, which holds these words and comes after warnings, if
+    /// there are any.
     #[track_caller]
     pub fn fails(&self, name: &str, code: i32, words: &[&str]) {
-        let Self { stderr, stdout, .. } = self;
+        let Self { stdout, .. } = self;
+        let lines: Vec<&str> = self.stderr.lines().skip_while(|line| line.starts_with("warning: ")).collect();
+        let stderr = lines.join("\n");
         assert_eq!(self.code, code, "{name}: {stderr}");
         assert!(stderr.starts_with("sunbake: ") && stderr.lines().count() == 1, "{name}: not one line:\n{stderr}");
         assert!(stdout.is_empty(), "{name}: {stdout}");

@@ -338,7 +338,7 @@ mod tests {
     #[test]
     fn lit_pictures_have_smooth_edges_unless_told_otherwise() {
         let samples = |options: &[&str], output| {
-            let args = ["sunplay", "frame", "set", "out.png", "--at", "0.5"].iter().chain(options);
+            let args = ["sunplay", "frame", "set", "-o", "out.png", "--at", "0.5"].iter().chain(options);
             match Args::try_parse_from(args).unwrap().command {
                 Command::Frame(args) => args.look.samples(output),
                 _ => unreachable!(),

@@ -12,8 +12,6 @@
 //! * **Receiver plane** (Isidoro, "Shadow mapping: GPU-based tips and techniques", GDC 2006): each texel is compared
 //!   with the receiver's plane at that texel, so that wide filters need no more bias than narrow ones. In a concave
 //!   corner that faces the light a plane continues behind the other wall, and the filter darkens both near the corner.
-//!   Where the sun is within 3.6 degrees of the plane, half a texel across the light is eight along it, and the plane
-//!   passes behind what stands on it: a roof would draw stripes on the wall below it. There the normal offset is used.
 //!
 //! A small bias for rounding and for the raster's own grid is always added: a 128th of a texel, a 256th of a pixel, and
 //! some steps of `f32`.

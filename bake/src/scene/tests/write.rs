@@ -145,9 +145,9 @@ fn materials_survive(scene: &Scene) {
     let (_, again) = rewrite(scene);
     for (a, b) in scene.materials.iter().zip(&again.materials) {
         assert_eq!((&a.name, a.base_color, a.emissive, a.alpha), (&b.name, b.base_color, b.emissive, b.alpha));
-        assert_eq!((a.is_double_sided, a.is_unlit), (b.is_double_sided, b.is_unlit));
+        assert_eq!((a.is_double_sided, a.is_unlit, a.is_clear), (b.is_double_sided, b.is_unlit, b.is_clear));
     }
-    assert_eq!((again.materials[0].alpha, again.materials[1].alpha), (Alpha::Mask { cutoff: 0.3 }, Alpha::Invisible));
+    assert_eq!((again.materials[0].alpha, again.materials[1].alpha), (Alpha::Mask { cutoff: 0.3 }, Alpha::Opaque));
     let texture = |scene: &Scene| scene.materials[0].base_color_texture.expect("a texture");
     let (a, b) = (texture(scene), texture(&again));
     assert_eq!((a.texcoord, a.wrap), (b.texcoord, b.wrap));

@@ -195,8 +195,6 @@ impl MapRenderer<'_> {
             slope: bias.slope as f32,
             normal: bias.normal as f32,
             reach: if bias.has_plane { tap_reach } else { tap_reach + filter_reach },
-            // Half a texel at least, where a lookup without a plane meets the depth of its own texel.
-            reach_without_plane: tap_reach.max(0.5) + filter_reach,
             has_plane: bias.has_plane,
         }
     }

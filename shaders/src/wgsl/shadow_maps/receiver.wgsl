@@ -13,10 +13,6 @@ struct Receiver {
 
 // Steps of f32 that places and depths are off by.
 const ROUNDING: f32 = 4.8e-7;
-// The least cosine between a plane and the sun at which texels are compared with the plane. Below it, a step of half a
-// texel reaches so far along the light that the plane passes behind whatever stands on it: a roof shades the wall that
-// carries it. There receivers are moved along their normals instead.
-const LEAST_PLANE_COS: f32 = 0.0625;
 // The least depth of a receiver, above 0: casters above the map are clamped to 0. Empty texels hold 1.
 const LEAST_DEPTH: f32 = 3.8e-6;
 
@@ -48,9 +44,7 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let texel_m = max(length(step_u), length(step_v)) * texel;
     let facing = max(dot(geometric_normal, sun), 1.0 / 4096.0);
     let raster_m = corner_m / 128.0 + length(from_eye_m) * (frame.pixel_angle_rad / 256.0 + ROUNDING);
-    let is_grazed = BIAS_HAS_PLANE && facing < LEAST_PLANE_COS;
-    let reach = select(BIAS_NORMAL * BIAS_REACH, BIAS_REACH_WITHOUT_PLANE, is_grazed);
-    let off_surface_m = reach * corner_m + raster_m;
+    let off_surface_m = BIAS_NORMAL * BIAS_REACH * corner_m + raster_m;
     let towards_sun_m = BIAS_CONSTANT_M + BIAS_CONSTANT_TEXELS * texel_m + BIAS_SLOPE * BIAS_REACH * corner_m / facing;
     let unbiased_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m;
     let point_m = unbiased_m + geometric_normal * off_surface_m + sun * towards_sun_m;
@@ -64,9 +58,6 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let depth_row = rows[2].xyz - rows[3].xyz * at.depth;
     at.depth_per_uv = vec2<f32>(dot(depth_row, along_u), dot(depth_row, along_v)) / clip.w;
     at.depth -= ROUNDING * (1.0 + abs(at.depth_per_uv.x) + abs(at.depth_per_uv.y));
-    if is_grazed {
-        at.depth_per_uv = vec2<f32>(0.0);
-    }
     at.metres_per_uv = vec2<f32>(length(step_u), length(step_v));
     return at;
 }
