@@ -165,18 +165,18 @@ pub fn attributes(surface: SurfaceVariant) -> Vec<Attribute> {
     if surface.has_vertex_color {
         all.push(make("color", Stream::Color, Format::Unorm16x4, offset_of!(ColorVertex, color), false));
     }
-    let mut texture = |stream, uv, texels_per_metre| {
-        all.push(make(uv, stream, Format::Float2, offset_of!(TextureVertex, image_uv), false));
-        all.push(make(texels_per_metre, stream, Format::Float, offset_of!(TextureVertex, texels_per_metre), true));
+    // Coordinates and texels per metre in one: a GPU has no more than sixteen attributes.
+    let mut texture = |stream, place| {
+        all.push(make(place, stream, Format::Float3, offset_of!(TextureVertex, image_uv), false));
     };
     if surface.look.has_metallic_roughness_map {
-        texture(Stream::MetallicRoughness, "metal_uv", "metal_texels_per_metre");
+        texture(Stream::MetallicRoughness, "metal_place");
     }
     if surface.look.has_emissive_map {
-        texture(Stream::Emissive, "emissive_uv", "emissive_texels_per_metre");
+        texture(Stream::Emissive, "emissive_place");
     }
     if surface.look.has_normal_map {
-        texture(Stream::Normal, "normal_uv", "normal_texels_per_metre");
+        texture(Stream::Normal, "normal_place");
         all.push(make("tangent", Stream::Normal, Format::Snorm16x4, offset_of!(NormalVertex, tangent), false));
     }
     if surface.has_lift {

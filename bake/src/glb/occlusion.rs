@@ -21,16 +21,13 @@ pub struct OcclusionPage {
 }
 
 impl OcclusionPage {
-    /// Encodes a page's ambient visibility. Each first texel of `behind_walls` gets the value of the second.
-    pub fn new(size: PageSize, maps: &AmbientMaps, behind_walls: &[(usize, usize)]) -> Self {
+    /// Encodes a page's ambient visibility.
+    pub fn new(size: PageSize, maps: &AmbientMaps) -> Self {
         let front = &maps.front.visibility;
-        let mut grey: Vec<u8> = match &maps.back {
+        let grey: Vec<u8> = match &maps.back {
             None => front.iter().map(|&code| in_8_bits(code)).collect(),
             Some(back) => front.iter().zip(&back.visibility).map(|(&f, &b)| in_8_bits(f.max(b))).collect(),
         };
-        for &(texel, source) in behind_walls {
-            grey[texel] = grey[source];
-        }
         let mut png = Vec::new();
         let mut encoder = png::Encoder::new(&mut png, size.width, size.height);
         encoder.set_color(png::ColorType::Grayscale);

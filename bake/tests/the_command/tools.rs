@@ -34,8 +34,8 @@ impl Run {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("stdout is no JSON: {e}\n{}", self.stdout))
     }
 
-    /// Checks that it failed with this code and one line on stderr, which holds these words and comes after warnings, if
-    /// there are any.
+    /// Checks that it failed with this code and one line on stderr, which holds these words and comes after warnings,
+    /// if there are any.
     #[track_caller]
     pub fn fails(&self, name: &str, code: i32, words: &[&str]) {
         let Self { stdout, .. } = self;

@@ -60,7 +60,9 @@ fn domes_are_named() -> Found {
     must(line.is_some(), || format!("{warnings:?}"))?;
     let dark = mean_light_on(&stage(&dome, &settings()), "floor");
     let lit = mean_light_on(&stage(&dome, &left_out("SkySphere")), "floor");
-    let passed = ObjectWishes { no_cast: vec!["sky".into()], ..ObjectWishes::default() };
+    // Nor does it take texels from the rest then.
+    let sky = || vec!["sky".to_owned()];
+    let passed = ObjectWishes { no_cast: sky(), no_receive: sky(), ..ObjectWishes::default() };
     let no_cast = mean_light_on(&stage(&dome, &BakeSettings { objects: passed, ..settings() }), "floor");
     let text = format!("mean light on the floor {dark:.3}, left out {lit:.3}, not casting {no_cast:.3}");
     must(dark == 0.0 && lit > 0.5 && (lit - no_cast).abs() < 0.02, || text.clone())?;
@@ -159,15 +161,15 @@ fn a_bench_has_its_own_density() -> Found {
 /// B21: filtered playback against truth at points of the ground around the bench.
 fn a_bench_casts_its_shadow() -> Found {
     let terrain = scene("14_terrain/scene.glb");
-    let around = ["seat", "back", "leg1", "leg2"].map(|name| (name.to_owned(), 20.0)).into();
+    let around = ["seat", "back", "leg1", "leg2"].map(|name| (name.to_owned(), 12.0)).into();
     let dense = ObjectWishes { density_around: around, ..ObjectWishes::default() };
-    let errors = [(ObjectWishes::default(), 256), (dense, 1024)].map(|(objects, page_size_texels)| {
+    let errors = [(ObjectWishes::default(), 256), (dense, 512)].map(|(objects, page_size_texels)| {
         ground_error(&stage(&terrain, &BakeSettings { objects, page_size_texels, ..settings() }))
     });
     let [[plain, shade], [dense, _]] = errors;
     let text =
-        format!("mean error {dense:.4} with 20 texels a metre around it, {plain:.4} without; {shade:.3} in shade");
-    must(shade > 0.02 && dense < 0.15 * shade && plain > 0.5 * shade, || text.clone())?;
+        format!("mean error {dense:.4} with 12 texels a metre around it, {plain:.4} without; {shade:.3} in shade");
+    must(shade > 0.02 && dense < 0.25 * shade && plain > 0.5 * shade, || text.clone())?;
     Ok(text)
 }
 

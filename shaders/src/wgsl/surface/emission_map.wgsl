@@ -3,6 +3,6 @@
 @group(2) @binding(7) var emissive_sampler: sampler;
 
 fn emitted_light(varyings: Varyings, ray: vec3<f32>, material: Material) -> vec3<f32> {
-    let level = texture_level(varyings, ray, varyings.emissive_texels_per_metre);
-    return material.emissive * textureSampleLevel(emissive_texture, emissive_sampler, varyings.emissive_uv, level).rgb;
+    let level = texture_level(varyings, ray, varyings.emissive_place.z);
+    return material.emissive * textureSampleLevel(emissive_texture, emissive_sampler, varyings.emissive_place.xy, level).rgb;
 }

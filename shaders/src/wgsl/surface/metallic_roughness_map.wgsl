@@ -3,7 +3,7 @@
 @group(2) @binding(3) var metal_sampler: sampler;
 
 fn metallic_roughness(varyings: Varyings, ray: vec3<f32>, material: Material) -> vec2<f32> {
-    let level = texture_level(varyings, ray, varyings.metal_texels_per_metre);
-    let texel = textureSampleLevel(metal_texture, metal_sampler, varyings.metal_uv, level);
+    let level = texture_level(varyings, ray, varyings.metal_place.z);
+    let texel = textureSampleLevel(metal_texture, metal_sampler, varyings.metal_place.xy, level);
     return vec2<f32>(material.metallic, material.roughness) * texel.bg;
 }

@@ -11,8 +11,8 @@ fn shading_normal(varyings: Varyings, ray: vec3<f32>, material: Material) -> vec
     }
     let tangent = normalize(along);
     let bitangent = cross(normal, tangent) * sign(varyings.tangent.w);
-    let level = texture_level(varyings, ray, varyings.normal_texels_per_metre);
-    let texel = textureSampleLevel(normal_texture, normal_sampler, varyings.normal_uv, level).xyz * 2.0 - 1.0;
+    let level = texture_level(varyings, ray, varyings.normal_place.z);
+    let texel = textureSampleLevel(normal_texture, normal_sampler, varyings.normal_place.xy, level).xyz * 2.0 - 1.0;
     let tilted = (tangent * texel.x + bitangent * texel.y) * material.normal_scale + normal * texel.z;
     return tilted / max(length(tilted), 1e-6);
 }
