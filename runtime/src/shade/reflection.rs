@@ -143,8 +143,8 @@ mod tests {
 
     /// The share of the light of all directions that is sent to the eye, by quadrature: that of single reflections,
     /// which lose some of it on rough surfaces. Metals add none. Of others the specification's mix takes from what is
-    /// scattered as much as a microfacet towards each light reflects, which is less than what the surface reflects to an
-    /// eye that grazes it: it may add that much.
+    /// scattered as much as a microfacet towards each light reflects, which is less than what the surface reflects to
+    /// an eye that grazes it: it may add that much.
     #[test]
     fn light_from_all_directions_adds_up_to_no_more_than_the_specification_adds() {
         let (rows, columns) = (600, 400);

@@ -4,5 +4,6 @@
 
 fn emitted_light(varyings: Varyings, ray: vec3<f32>, material: Material) -> vec3<f32> {
     let level = texture_level(varyings, ray, varyings.emissive_place.z);
-    return material.emissive * textureSampleLevel(emissive_texture, emissive_sampler, varyings.emissive_place.xy, level).rgb;
+    let texel = textureSampleLevel(emissive_texture, emissive_sampler, varyings.emissive_place.xy, level);
+    return material.emissive * texel.rgb;
 }
