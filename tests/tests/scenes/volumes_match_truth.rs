@@ -69,7 +69,7 @@ fn all_ways_of_drawing_agree(scene: &Path, edge_px: u32) {
     let (gpu, stage) = (gpu(), stage(scene));
     let mut ways: Vec<Volumes> =
         all_ways().into_iter().filter(is_quick).map(|way| Volumes::new(&gpu, &stage, way).unwrap()).collect();
-    let mut compared = 0;
+    let (mut compared, mut on_turned_facets) = (0, 0);
     // Every sixth of 12 times is two, of 4 times one.
     for t in times().step_by(6) {
         let moment = Moment::new(stage.path.as_ref(), t);
@@ -78,13 +78,28 @@ fn all_ways_of_drawing_agree(scene: &Path, edge_px: u32) {
             let expected = mask(&mut ways[0], &shot, &moment, LightKind::Sun);
             for other in &mut ways[1..] {
                 let found = mask(other, &shot, &moment, LightKind::Sun);
-                let differ = found.pixels.iter().zip(&expected.pixels).filter(|(a, b)| a != b).count();
-                assert_eq!(differ, 0, "at {t:.3}, camera {index}, {}", other.name());
+                let pairs = found.pixels.iter().zip(&expected.pixels).enumerate();
+                let differing: Vec<usize> = pairs.filter(|(_, (a, b))| a != b).map(|(pixel, _)| pixel).collect();
+                let (turned, differ): (Vec<usize>, Vec<usize>) =
+                    differing.into_iter().partition(|&pixel| is_on_turned_facet(&shot, &moment, pixel));
+                assert!(differ.is_empty(), "at {t:.3}, camera {index}, {}: {differ:?}", other.name());
+                on_turned_facets += turned.len();
                 compared += found.pixels.len();
             }
         }
     }
-    println!("{compared} pixels compared between ways of drawing them, none differ");
+    println!("{compared} pixels compared between ways of drawing them, {on_turned_facets} on turned facets differ");
+    assert!((on_turned_facets as f64) < FEW_FACETS * compared as f64);
+}
+
+/// Whether a pixel shows a facet of something smooth that turns away from the sun. The volume of a smooth solid starts
+/// there, and its cap lies within rounding of what is seen.
+fn is_on_turned_facet(shot: &Shot, moment: &Moment, pixel: usize) -> bool {
+    let Some(hit) = shot.hits()[pixel] else { return false };
+    let (geometry, triangle) = (&shot.stage.geometry, hit.triangle as usize);
+    let front = geometry.normal(triangle).as_vec3();
+    let seen = if front.dot(shot.ray(pixel)) > 0.0 { -front } else { front };
+    geometry.is_smooth(triangle) && seen.dot(moment.sun_direction) <= 0.0
 }
 
 /// Scenes, with the edge of their pictures in pixels: of masks beside truth, and of ways of drawing beside each other.
