@@ -193,7 +193,9 @@ impl Shape {
         let Some(along) = lift.try_normalize() else { return lift };
         let hits = (0..here.geometry.triangles.len()).filter_map(|triangle| {
             let corners = here.geometry.triangles[triangle].map(|corner| corner.as_dvec3());
-            met(&corners, start, along)?;
+            let barycentric = met(&corners, start, along)?;
+            let surface = here.geometry.surface(triangle);
+            is_solid_at(&here.scene, surface.instance, surface.mesh_triangle, barycentric).then_some(())?;
             let plane = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             here.geometry.casts(&here.scene, triangle).then(|| plane.dot(corners[0] - start) / plane.dot(along))
         });
