@@ -108,7 +108,7 @@ fn describe(set: &BakedSet, buried: &BuriedPoints, page: usize, sample: &Sample)
     };
     let lanes: Vec<TexelLane> = maps.lanes.iter().map(|lane| of_lane(lane, sample.texel as usize, set.bits)).collect();
     let texel = sample.texel as usize;
-    let is_filled = lanes.iter().any(|lane| !lane.lit.is_empty()) && buried.is_buried(&point);
+    let is_filled = lanes.iter().any(|lane| !lane.lit.is_empty()) && buried.is_buried(&point, 0.0);
     let front = maps.ambient.as_ref().map(|ambient| &ambient.front);
     let back = maps.ambient.as_ref().and_then(|ambient| ambient.back.as_ref());
     Texel {

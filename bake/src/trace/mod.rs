@@ -141,7 +141,7 @@ impl Tracer {
     }
 
     /// Distance of the nearest surface along the direction, if there is one within reach.
-    fn nearest_within(&self, origin_m: DVec3, direction: &Direction, reach_m: f64) -> Option<f64> {
+    pub fn nearest_within(&self, origin_m: DVec3, direction: &Direction, reach_m: f64) -> Option<f64> {
         let origin = origin_m * self.tracer_from_bake;
         let mut nearest = reach_m * self.tracer_from_bake;
         let mut found = false;

@@ -5,9 +5,13 @@
 //! say what to show in its place; what only some of them see is left out. Neighbours behind walls say nothing: no
 //! filter blends across ([`crate::atlas::find_walls`]), and what looks like a solid may be a room without inner faces.
 //!
-//! Practice: only texels that are hardly ever lit and have a lit neighbour are tested, by rays over the hemisphere: all
-//! of them meet the backs of single-sided surfaces, or, within the size of a texel, backs of double-sided ones. (At a
-//! distance the backs of double-sided surfaces are walls of a room.)
+//! Practice: only texels with a neighbour that sees more are tested.
+//!
+//! * Those that are hardly ever lit, by rays over the hemisphere: all of them meet the backs of single-sided surfaces,
+//!   or, within the size of a texel, backs of double-sided ones. (At a distance the backs of double-sided surfaces are
+//!   walls of a room.)
+//! * All, by one ray: straight above them, within a tenth of a texel, lies something. So the sun that grazes comes in
+//!   under the border of a decal, yet a filter sees none of it.
 
 use crate::ambient::{back_comes_first, hemisphere_directions};
 use crate::atlas::{self, Around, PageSamples, PageSize, SurfacePoint};
@@ -22,6 +26,8 @@ use std::collections::HashMap;
 const RAYS: u32 = 16;
 /// Share of the path below which a texel may be buried.
 const DARK: f64 = 0.05;
+/// Height below which what is above a texel lies on it, in texels.
+const ON_TEXELS: f64 = 0.1;
 
 /// Finds buried points.
 pub(crate) struct BuriedPoints<'a> {
@@ -33,15 +39,22 @@ pub(crate) struct BuriedPoints<'a> {
 }
 
 impl BuriedPoints<'_> {
-    /// Whether a point lies inside a solid, or right under something.
-    pub fn is_buried(&self, point: &SurfacePoint) -> bool {
+    /// Whether nobody sees a point that sees this share of the path: it lies inside a solid, or right under something.
+    pub fn is_buried(&self, point: &SurfacePoint, lit_share: f64) -> bool {
         let texel_m = self.texel_m[self.geometry.instance[point.triangle as usize] as usize];
         let sides: &[f64] = if point.is_double_sided { &[1.0, -1.0] } else { &[1.0] };
         sides.iter().all(|side| {
             let normal = point.normal * *side;
             let from = self.tracer.lift(point.position_m, normal, point.triangle);
-            hemisphere_directions(normal, RAYS).all(|direction| self.meets_back(from, direction, texel_m))
+            let is_inside =
+                || hemisphere_directions(normal, RAYS).all(|direction| self.meets_back(from, direction, texel_m));
+            self.is_covered(from, normal, texel_m) || (lit_share < DARK && is_inside())
         })
+    }
+
+    /// Whether something lies on a point.
+    fn is_covered(&self, from: DVec3, normal: DVec3, texel_m: f64) -> bool {
+        self.tracer.nearest_within(from, &Direction::new(normal), ON_TEXELS * texel_m).is_some()
     }
 
     fn meets_back(&self, from: DVec3, direction: DVec3, texel_m: f64) -> bool {
@@ -71,10 +84,10 @@ impl Answers<'_> {
         self.tables[index / length].get(index % length)
     }
 
-    /// Whether a texel sees next to nothing of the sun: what lies on a surface lets in the sun that grazes it.
-    fn is_dark(&self, place: usize) -> bool {
+    /// Share of the path that a texel sees, in the lane where that is most.
+    fn lit_share(&self, place: usize) -> f64 {
         let length = |lane: usize| self.get(place, lane).iter().map(|[start, end]| end - start).sum::<f64>();
-        (0..self.lane_count).all(|lane| length(lane) < DARK)
+        (0..self.lane_count).map(length).fold(0.0, f64::max)
     }
 }
 
@@ -99,17 +112,18 @@ pub(crate) fn fill_buried(
     };
     let is_buried = |place: usize| {
         let point = atlas::surface_point(buried.scene, buried.geometry, &samples[order[place] as usize]);
-        answers.is_dark(place) && buried.is_buried(&point)
+        buried.is_buried(&point, answers.lit_share(place))
     };
     let fill = |place: usize| {
-        if !answers.is_dark(place) {
-            return None;
-        }
         let neighbours = neighbours(place);
-        if neighbours.iter().all(|&other| answers.is_dark(other)) || !is_buried(place) {
+        let own_share = answers.lit_share(place).max(DARK);
+        if neighbours.iter().all(|&other| answers.lit_share(other) <= own_share) || !is_buried(place) {
             return None;
         }
         let visible: Vec<usize> = neighbours.into_iter().filter(|&other| !is_buried(other)).collect();
+        if visible.is_empty() {
+            return None;
+        }
         let of_lane = |lane: usize| {
             let lists = visible.iter().map(|&other| Intervals::from_unsorted(answers.get(other, lane).to_vec()));
             lists.reduce(|a, b| a.intersection(&b)).unwrap_or_default()
