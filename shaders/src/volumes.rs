@@ -19,7 +19,8 @@ pub enum VolumeLight {
 pub enum VolumeCorners {
     /// An index list made by the CPU: entry point `volume_vertex`.
     Indexed,
-    /// The vertex shader, from every edge: entry points `wall_vertex`, `cap_vertex`, and for lamps `dark_cap_vertex`.
+    /// The vertex shader, from every edge: entry points `wall_vertex`, `cap_vertex`, for lamps `dark_cap_vertex`, and
+    /// for smooth solids `spared_vertex`.
     FromEdges,
 }
 

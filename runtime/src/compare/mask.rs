@@ -44,13 +44,13 @@ pub struct MaskAgreement {
     pub pixels: usize,
     /// Pixels in the band.
     pub in_band: usize,
-    /// Wrong pixels in the band.
+    /// Other wrong pixels in the band.
     pub wrong_in_band: usize,
     /// Wrong pixels outside of the band, at fine edges.
     pub at_fine_edges: usize,
     /// Wrong pixels outside of the band that show another surface, and are right about it.
     pub of_other_surfaces: usize,
-    /// Wrong pixels outside of the band, on facets that turn away from the light where their smooth surface does not.
+    /// Wrong pixels on facets that turn away from the light where their smooth surface does not.
     pub on_turned_facets: usize,
     /// Other wrong pixels: indices in row order.
     pub unexplained: Vec<usize>,
@@ -79,10 +79,10 @@ impl MaskAgreement {
             if !is_wrong {
             } else if !is_lit && mask.pixels[i] != 0.0 {
                 found.unexplained.push(i);
-            } else if is_edge {
-                found.wrong_in_band += 1;
             } else if reasons.is_on_turned_facet(i) {
                 found.on_turned_facets += 1;
+            } else if is_edge {
+                found.wrong_in_band += 1;
             } else if reasons.is_at_fine_edge(i, is_lit) || (!is_lit && reasons.grazes_a_caster(i)) {
                 found.at_fine_edges += 1;
             } else if reasons.shows_other_surface(i, is_lit, f64::from(depth_m)) {
@@ -97,14 +97,14 @@ impl MaskAgreement {
     /// The numbers as a sentence.
     pub fn sentence(&self) -> String {
         format!(
-            "{} pixels compared, {} in the band ({} wrong there); elsewhere wrong: {} at fine edges, {} of other \
-             surfaces, {} on turned facets, {} unexplained",
+            "{} pixels compared, {} wrong on turned facets; {} in the band ({} wrong there); elsewhere wrong: {} at \
+             fine edges, {} of other surfaces, {} unexplained",
             self.pixels,
+            self.on_turned_facets,
             self.in_band,
             self.wrong_in_band,
             self.at_fine_edges,
             self.of_other_surfaces,
-            self.on_turned_facets,
             self.unexplained.len()
         )
     }

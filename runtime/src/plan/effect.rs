@@ -63,7 +63,7 @@ pub enum DrawEffect {
     ZFail,
     /// Casters that are not closed.
     OpenMeshes,
-    /// Smooth solids, which cast from their back faces.
+    /// Facets of smooth solids that turn away from the light.
     SmoothSolids,
     /// Silhouettes found by the vertex shader.
     SilhouettesByGpu,

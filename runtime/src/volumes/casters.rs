@@ -28,6 +28,8 @@ pub struct Casters {
     pub points_m: Vec<Vec3>,
     /// Triangles by caster: points, counter-clockwise from the front. The front of a solid is its outside.
     pub triangles: Vec<[u32; 3]>,
+    /// For each triangle, whether it is a facet of something smooth that rises over its front.
+    pub is_risen_over: Vec<bool>,
     /// Edges by caster: points, lower first.
     pub edges: Vec<[u32; 2]>,
     /// For each edge, where its uses begin; one more entry at the end.
@@ -49,7 +51,7 @@ pub struct Caster {
     pub edges: Range<usize>,
     /// Whether all of it bounds solids.
     pub is_solid: bool,
-    /// Whether some of its triangles are facets of something smooth.
+    /// Whether something smooth rises over some of its triangles.
     pub is_smooth: bool,
     /// Whether few of its edges are shared, as in foliage made of cards.
     pub is_soup: bool,
@@ -236,6 +238,7 @@ fn arrange(
     let mut casters = Casters {
         points_m: Vec::with_capacity(welded.points_m.len()),
         triangles: Vec::with_capacity(order.len()),
+        is_risen_over: Vec::with_capacity(order.len()),
         edges: Vec::with_capacity(edge_order.len()),
         first_use: Vec::with_capacity(edge_order.len() + 1),
         uses: Vec::with_capacity(welded.uses.len()),
@@ -262,13 +265,15 @@ fn arrange(
             sides.front &= if is_turned { drawn.back } else { drawn.front };
             sides.back &= if is_turned { drawn.front } else { drawn.back };
             is_solid &= shape != Shape::Open;
-            is_smooth |= stage.geometry.is_smooth(flat[old] as usize);
+            let is_risen_over = is_risen_over(stage, flat[old] as usize, is_turned);
+            is_smooth |= is_risen_over;
             let mut points =
                 welded.triangles[old].map(|point| renumber(point, caster, welded, &mut new_point, &mut casters));
             if is_turned {
                 points.swap(1, 2);
             }
             casters.triangles.push(points);
+            casters.is_risen_over.push(is_risen_over);
             next += 1;
         }
         while next_edge < edge_order.len() && caster_of_edge(edge_order[next_edge]) == caster {
@@ -319,6 +324,14 @@ fn push_edge(
         let renumbered = edge_use.renumbered(new_triangle[edge_use.triangle()]);
         casters.uses.push(if (a > b) != is_turned { renumbered.reversed() } else { renumbered });
     }
+}
+
+/// Whether something smooth rises over a triangle's front, or over its back where that is outside.
+fn is_risen_over(stage: &Stage, triangle: usize, is_turned: bool) -> bool {
+    let front = stage.geometry.normal(triangle);
+    let outside = if is_turned { -front } else { front };
+    let lifts = stage.geometry.edge_lifts_m(triangle);
+    lifts.is_some_and(|lifts| lifts.iter().any(|lift| lift.dot(outside) > 0.0))
 }
 
 /// Whether a triangle's material has an alpha mask.

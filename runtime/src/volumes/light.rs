@@ -6,6 +6,7 @@ use super::casters::{Caster, Casters};
 use super::nearest::distance_m;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A light without size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,9 +34,20 @@ pub struct Facings {
     /// For each caster, whether its front faces alone cast its whole shadow: it bounds solids, and the light is inside
     /// none of them.
     pub is_solid: Vec<bool>,
-    /// For each caster, whether it casts from its back faces instead: a smooth solid. Light then ends on it where
-    /// shading normals say, since the space between its front and its back faces is no part of its volume.
-    pub is_from_behind: Vec<bool>,
+    /// For each triangle, whether its own solid is not to shade it: it turns away from the light, and something smooth
+    /// rises over it.
+    pub is_spared: Vec<bool>,
+}
+
+impl Facings {
+    /// The same, but that only some triangles cast.
+    pub fn within(&self, triangles: &Range<usize>) -> Self {
+        let mut within = self.clone();
+        for triangle in (0..self.of_triangle.len()).filter(|triangle| !triangles.contains(triangle)) {
+            (within.of_triangle[triangle], within.is_spared[triangle]) = (0, false);
+        }
+        within
+    }
 }
 
 /// Distance from a triangle below which rounding hides on which side of it a lamp is, in `f32` steps of the largest
@@ -72,22 +84,20 @@ impl Light {
     }
 
     /// Which triangles face the light, and how. Back faces of solids cast nothing that front faces do not; with
-    /// `omits_back_faces_of_solids` they are left out. Smooth solids cast from their back faces, whatever is asked for.
-    /// Triangles that are edge on have no prism.
+    /// `omits_back_faces_of_solids` they are left out, and always those of smooth solids, which are to hold each spared
+    /// triangle once. Triangles that are edge on have no prism.
     pub fn facings(&self, casters: &Casters, omits_back_faces_of_solids: bool) -> Facings {
         let is_solid: Vec<bool> = casters.all.par_iter().map(|caster| self.sees_solid(casters, caster)).collect();
-        let is_from_behind: Vec<bool> =
-            casters.all.iter().zip(&is_solid).map(|(caster, is_solid)| caster.is_smooth && *is_solid).collect();
-        let of_caster = |((caster, &is_solid), &is_from_behind): ((&Caster, &bool), &bool)| {
-            let omits_fronts = is_from_behind;
-            let omits_backs = omits_back_faces_of_solids && is_solid && !is_from_behind;
+        let of_caster = |(caster, &is_solid): (&Caster, &bool)| {
+            let omits_backs = is_solid && (omits_back_faces_of_solids || caster.is_smooth);
             caster.triangles.clone().into_par_iter().with_min_len(1024).map(move |triangle| {
                 let front = self.front(&casters.corners_m(triangle));
-                i8::from(front > 0.0 && !omits_fronts) - i8::from(front < 0.0 && !omits_backs)
+                let facing = i8::from(front > 0.0) - i8::from(front < 0.0 && !omits_backs);
+                (facing, front < 0.0 && is_solid && casters.is_risen_over[triangle])
             })
         };
-        let of_triangle = casters.all.par_iter().zip(&is_solid).zip(&is_from_behind).flat_map(of_caster).collect();
-        Facings { of_triangle, is_solid, is_from_behind }
+        let (of_triangle, is_spared) = casters.all.par_iter().zip(&is_solid).flat_map(of_caster).unzip();
+        Facings { of_triangle, is_solid, is_spared }
     }
 }
 

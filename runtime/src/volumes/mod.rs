@@ -21,12 +21,11 @@
 //! not shade themselves, nor the surfaces on which they lie.
 //!
 //! **Smooth solids.** Light ends on a smooth surface where its shading normals say ([`sunbake::scene::SmoothPoint`]),
-//! and not face by face. The usual volume of a solid starts at its front faces, and holds all faces that turn away. So
-//! smooth solids cast from their back faces, as in second-depth shadow mapping (Wang and Molnar, "Second-depth shadow
-//! mapping", 1994): the same shadow on all else. Their caps are moved towards the eye, before the faces that they lie
-//! on; those then are as little in their own volume as the inside of the solid is. The shading normal alone tells where
-//! they face the light. Open meshes have no inside: they cast from every triangle, and their facets stay dark where
-//! they turn away.
+//! and not face by face. But the volume of a solid holds all its facets that turn away, each of them once: a ray from
+//! there to the light leaves the solid through a front face. Such facets are *spared*: after the faces they are drawn
+//! themselves, and where they are what is seen, one is taken from the count. What is left is what others cast; and the
+//! shading normal alone tells whether the facet faces the light. Facets stay dark where nothing smooth rises over them
+//! (in a hollow), and on open meshes, which have no inside.
 //!
 //! **What it does not do.** Alpha masks are ignored: a leaf casts the shadow of its whole card. Lights have no size:
 //! soft edges take many lights.

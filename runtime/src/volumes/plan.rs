@@ -32,7 +32,7 @@ impl StencilMethod {
     /// Whether a part of the volume is drawn.
     fn has(self, part: Part) -> bool {
         match (self, part) {
-            (_, Part::Walls) => true,
+            (_, Part::Walls | Part::Spared) => true,
             (Self::ZFail { caps, .. }, Part::Caps) => caps,
             (Self::ZFail { dark_caps, .. }, Part::DarkCaps) => dark_caps,
             (Self::ZPass { dark_caps }, Part::DarkCaps) => dark_caps,
@@ -193,10 +193,6 @@ impl Chooser<'_> {
     /// that it lies on, and the eye is outside of the volume.
     fn allows_z_pass(&self, index: usize) -> bool {
         let caster = &self.casters.all[index];
-        // Caps on back faces are seen.
-        if self.facings.is_from_behind[index] {
-            return false;
-        }
         let hides_caps = caster.shows_both_sides || (caster.shows_fronts && self.facings.is_solid[index]);
         hides_caps && !self.frustum.may_be_shaded_by(self.casters, caster, &self.facings.of_triangle, self.light)
     }

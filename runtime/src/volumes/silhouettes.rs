@@ -15,6 +15,7 @@
 //! and for a lamp each point extruded away from it.
 
 use super::casters::{Caster, Casters};
+use super::light::Facings;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -55,6 +56,8 @@ pub struct Parts {
     pub caps: Range<u32>,
     /// Caps at infinity.
     pub dark_caps: Range<u32>,
+    /// Triangles that the volume is not to shade, though it holds them.
+    pub spared: Range<u32>,
 }
 
 /// A part of a volume.
@@ -66,11 +69,13 @@ pub enum Part {
     Caps,
     /// The far ends of a lamp's volumes.
     DarkCaps,
+    /// No face of the volume: triangles of the caster that it is not to shade, though it holds them.
+    Spared,
 }
 
 impl Part {
-    /// All of them, in the order in which they lie in [`Volumes::indices`].
-    pub const ALL: [Self; 3] = [Self::Walls, Self::Caps, Self::DarkCaps];
+    /// The faces, in the order in which they lie in [`Volumes::indices`]. Spared triangles follow.
+    pub const FACES: [Self; 3] = [Self::Walls, Self::Caps, Self::DarkCaps];
 
     /// The range of this part.
     pub fn of(self, parts: &Parts) -> Range<u32> {
@@ -78,6 +83,7 @@ impl Part {
             Self::Walls => parts.walls.clone(),
             Self::Caps => parts.caps.clone(),
             Self::DarkCaps => parts.dark_caps.clone(),
+            Self::Spared => parts.spared.clone(),
         }
     }
 }
@@ -92,14 +98,16 @@ pub enum Sharing {
 }
 
 /// The volumes of all casters.
-pub fn volumes(casters: &Casters, facings: &[i8], extrusion: Extrusion, sharing: Sharing) -> Volumes {
+pub fn volumes(casters: &Casters, facings: &Facings, extrusion: Extrusion, sharing: Sharing) -> Volumes {
+    let Facings { of_triangle: facings, is_spared, .. } = facings;
     let of_caster = |caster: &Caster| {
         let walls = match sharing == Sharing::Prisms || caster.is_soup {
             true => walls_of_prisms(casters, facings, caster, extrusion),
             false => walls_of_silhouettes(casters, facings, caster, extrusion),
         };
         let (caps, dark_caps) = caps(casters, facings, caster, extrusion);
-        [walls, caps, dark_caps]
+        let spared = caster.triangles.clone().filter(|&triangle| is_spared[triangle]);
+        [walls, caps, dark_caps, spared.flat_map(|triangle| casters.triangles[triangle]).collect()]
     };
     joined(&casters.all.par_iter().map(of_caster).collect::<Vec<_>>())
 }
@@ -159,18 +167,18 @@ fn caps(casters: &Casters, facings: &[i8], caster: &Caster, extrusion: Extrusion
     (caps, dark_caps)
 }
 
-fn joined(all: &[[Vec<u32>; 3]]) -> Volumes {
+fn joined(all: &[[Vec<u32>; 4]]) -> Volumes {
     let mut volumes = Volumes {
         indices: Vec::with_capacity(all.iter().flatten().map(Vec::len).sum()),
         parts: Vec::with_capacity(all.len()),
     };
     for parts in all {
-        let [walls, caps, dark_caps] = parts.each_ref().map(|part| {
+        let [walls, caps, dark_caps, spared] = parts.each_ref().map(|part| {
             let first = volumes.indices.len() as u32;
             volumes.indices.extend(part);
             first..volumes.indices.len() as u32
         });
-        volumes.parts.push(Parts { walls, caps, dark_caps });
+        volumes.parts.push(Parts { walls, caps, dark_caps, spared });
     }
     volumes
 }

@@ -74,18 +74,17 @@ impl LightNeedsBound<'_> {
         let (corners, parts) = match (self.finds_on_gpu(), is_lamp) {
             (false, _) => (VolumeCorners::Indexed, &[Part::Walls][..]),
             (true, false) => (VolumeCorners::FromEdges, &[Part::Walls, Part::Caps][..]),
-            (true, true) => (VolumeCorners::FromEdges, &Part::ALL[..]),
+            (true, true) => (VolumeCorners::FromEdges, &Part::FACES[..]),
         };
         let light = if is_lamp { VolumeLight::LampWithRange } else { VolumeLight::Sun };
         let is_run = self.casters.triangles.len() > MOST_COUNTED;
         let ways = if wants_z_pass && hides_caps { &[true, false][..] } else { &[false][..] };
-        let (of, is_before) = (VolumeUse::Stencil, false);
-        let key = |is_z_pass| move |&part| FaceKey { light, corners, part, of, is_z_pass, is_run, is_before };
-        let caps = if self.finds_on_gpu() { Part::Caps } else { Part::Walls };
+        let of = VolumeUse::Stencil;
+        let key = |is_z_pass| move |&part| FaceKey { light, corners, part, of, is_z_pass, is_run };
         let has_smooth = self.casters.all.iter().any(|caster| caster.is_smooth && caster.is_solid);
-        let before = has_smooth.then(|| FaceKey { is_before: true, ..key(false)(&caps) });
+        let spared = has_smooth.then(|| key(false)(&Part::Spared));
         // In front of the surface a caster's own caps are not counted.
         let is_there = |key: &FaceKey| !(key.is_z_pass && key.part == Part::Caps);
-        ways.iter().flat_map(|&way| parts.iter().map(key(way))).filter(is_there).chain(before).collect()
+        ways.iter().flat_map(|&way| parts.iter().map(key(way))).filter(is_there).chain(spared).collect()
     }
 }

@@ -2,10 +2,9 @@
 
 use super::VolumeSettings;
 use super::plan::{LightNeeds, VolumeNeeds, light_blend};
-use super::programs::FaceKey;
 use crate::gpu::plan::SceneNeeds;
 use crate::plan::{Census, DrawEffect, DrawNeed, Reason, Uncounted};
-use crate::volumes::{CasterCounts, Mode};
+use crate::volumes::{CasterCounts, Mode, Part};
 use sunbake_shaders::VolumeUse;
 
 /// Decides about each effect of shadow volumes.
@@ -69,8 +68,7 @@ impl VolumeDecisions<'_> {
         let effect = if is_z_pass { DrawEffect::ZPass } else { DrawEffect::ZFail };
         let is_on = self.any(|light| light.counts(is_z_pass));
         self.possible(effect, is_on, |needs| {
-            let is_kept = |key: &FaceKey| key.of != VolumeUse::Stencil || key.is_z_pass != is_z_pass;
-            needs.lights.iter_mut().for_each(|light| light.faces.retain(is_kept));
+            needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| !key.counts(is_z_pass)));
         })
     }
 
@@ -82,9 +80,9 @@ impl VolumeDecisions<'_> {
     }
 
     fn smooth_solids(&self) -> DrawNeed {
-        let is_on = self.any(|light| light.faces.iter().any(|key| key.is_before));
+        let is_on = self.any(|light| light.faces.iter().any(|key| key.part == Part::Spared));
         self.possible(DrawEffect::SmoothSolids, is_on, |needs| {
-            needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| !key.is_before));
+            needs.lights.iter_mut().for_each(|light| light.faces.retain(|key| key.part != Part::Spared));
         })
     }
 

@@ -3,19 +3,24 @@
 use super::extruded::{CountedRun, Extruded};
 use crate::volumes::{FramePlan, Part, VolumeOptimizations};
 use std::ops::Range;
-use sunbake_shaders::VolumeCorners;
+use sunbake_shaders::{VolumeCorners, VolumeUse};
 
 /// One draw call over faces of volumes.
 #[derive(Debug, Clone)]
 pub struct FaceDraw {
-    /// Which part, where the vertex shader finds silhouettes; else walls.
+    /// Which part, where the vertex shader finds silhouettes; else walls, or what is spared.
     pub part: Part,
     /// Vertices, or indices where the CPU listed them.
     pub corners: Range<u32>,
-    /// Whether they are caps on back faces, which lie in front of the surface.
-    pub is_before: bool,
     /// Instances: as many walls as an edge may need where the vertex shader finds silhouettes, else 1.
     pub instances: u32,
+}
+
+impl FaceDraw {
+    /// Whether it is drawn for this. Only counts spare.
+    pub fn serves(&self, of: VolumeUse) -> bool {
+        of == VolumeUse::Stencil || self.part != Part::Spared
+    }
 }
 
 /// Draw calls of each run.
@@ -55,23 +60,18 @@ fn draws(
     is_z_pass: bool,
     optimizations: VolumeOptimizations,
 ) -> Vec<FaceDraw> {
-    let draw = |part, instances| move |corners| FaceDraw { part, corners, is_before: false, instances };
-    let before = |part| move |corners| FaceDraw { part, corners, is_before: true, instances: 1 };
-    let is_from_behind = |caster: usize| extruded.facings.is_from_behind[caster];
-    let caps_before = plan.ranges(&run.parts, is_z_pass, &[Part::Caps], is_from_behind).into_iter();
+    let draw = |part, instances| move |corners| FaceDraw { part, corners, instances };
+    let all_of = |parts: &[Part]| plan.ranges(&run.parts, is_z_pass, parts, |_| true).into_iter();
+    // What is spared is taken from the whole count.
+    let spared = all_of(&[Part::Spared]).map(draw(Part::Spared, 1));
     if extruded.kind.1 == VolumeCorners::Indexed {
-        let usual = plan.ranges(&run.parts, is_z_pass, &Part::ALL, |caster| !is_from_behind(caster));
-        let others = plan.ranges(&run.parts, is_z_pass, &[Part::Walls, Part::DarkCaps], is_from_behind);
-        let all = usual.into_iter().chain(others).map(draw(Part::Walls, 1));
-        return all.chain(caps_before.map(before(Part::Walls))).collect();
+        return all_of(&Part::FACES).map(draw(Part::Walls, 1)).chain(spared).collect();
     }
     let walls = |doubles: bool| {
         let is_wanted = |caster| extruded.may_double(caster, optimizations) == doubles;
         let ranges = plan.ranges(&run.parts, is_z_pass, &[Part::Walls], is_wanted);
         ranges.into_iter().map(draw(Part::Walls, 1 + u32::from(doubles)))
     };
-    let caps = plan.ranges(&run.parts, is_z_pass, &[Part::Caps], |caster| !is_from_behind(caster));
-    let dark_caps = plan.ranges(&run.parts, is_z_pass, &[Part::DarkCaps], |_| true);
-    let caps = caps.into_iter().map(draw(Part::Caps, 1)).chain(dark_caps.into_iter().map(draw(Part::DarkCaps, 1)));
-    walls(false).chain(walls(true)).chain(caps).chain(caps_before.map(before(Part::Caps))).collect()
+    let caps = [Part::Caps, Part::DarkCaps].into_iter().flat_map(|part| all_of(&[part]).map(draw(part, 1)));
+    walls(false).chain(walls(true)).chain(caps).chain(spared).collect()
 }

@@ -13,6 +13,8 @@ use std::time::Instant;
 use sunbake_shaders::{VolumeCorners, VolumeLight};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+/// Code of a triangle that is spared; as in `volumes/silhouettes_by_gpu.wgsl`.
+const SPARED: u32 = 3;
 /// The farthest end of a lamp's volume, as a multiple of its caster's distance.
 const MOST_TIMES: f64 = 1e4;
 
@@ -83,10 +85,9 @@ impl Extruded {
             facings: Facings::default(),
         };
         for run in &runs {
-            let in_run = |(i, &facing): (usize, &i8)| if run.contains(&i) { facing } else { 0 };
-            let of_run: Cow<[i8]> = match runs.len() {
-                1 => Cow::Borrowed(&facings.of_triangle),
-                _ => facings.of_triangle.iter().enumerate().map(in_run).collect(),
+            let of_run = match runs.len() {
+                1 => Cow::Borrowed(&facings),
+                _ => Cow::Owned(facings.within(run)),
             };
             let run = match &buffers.edges {
                 Some(edges) => made.find(gpu, casters, buffers, edges, reaches.as_ref(), &of_run, extrusion)?,
@@ -109,7 +110,7 @@ impl Extruded {
         casters: &Casters,
         buffers: &CasterBuffers,
         reaches: Option<&wgpu::Buffer>,
-        facings: &[i8],
+        facings: &Facings,
         (extrusion, sharing): (Extrusion, Sharing),
     ) -> Result<CountedRun, GpuError> {
         let volumes = volumes(casters, facings, extrusion, sharing);
@@ -134,12 +135,13 @@ impl Extruded {
         buffers: &CasterBuffers,
         edges: &EdgeBuffers,
         reaches: Option<&wgpu::Buffer>,
-        facings: &[i8],
+        facings: &Facings,
         extrusion: Extrusion,
     ) -> Result<CountedRun, GpuError> {
-        let word =
-            |of: &[i8]| of.iter().enumerate().fold(0, |word, (i, facing)| word | ((facing + 1) as u32) << (2 * i));
-        let packed: Vec<u32> = facings.chunks(16).map(word).collect();
+        let code = |(&facing, &is_spared): (&i8, &bool)| if is_spared { SPARED } else { (facing + 1) as u32 };
+        let codes: Vec<u32> = facings.of_triangle.iter().zip(&facings.is_spared).map(code).collect();
+        let word = |of: &[u32]| of.iter().enumerate().fold(0, |word, (i, code)| word | code << (2 * i));
+        let packed: Vec<u32> = codes.chunks(16).map(word).collect();
         let packed = storage(gpu, "facings", bytemuck::cast_slice(&packed))?;
         self.buffers.0 += 1;
         self.buffers.1 += packed.size();
@@ -147,7 +149,9 @@ impl Extruded {
         let parts = casters.all.iter().zip(&edges.of_caster).map(|(caster, walls)| {
             let caps = 3 * caster.triangles.start as u32..3 * caster.triangles.end as u32;
             let dark_caps = if extrusion == Extrusion::Spread { caps.clone() } else { 0..0 };
-            Parts { walls: corners * walls.start..corners * walls.end, caps, dark_caps }
+            let spares = facings.is_spared[caster.triangles.clone()].contains(&true);
+            let spared = if spares { caps.clone() } else { 0..0 };
+            Parts { walls: corners * walls.start..corners * walls.end, caps, dark_caps, spared }
         });
         let bound = [
             (0, Some(&buffers.points)),

@@ -131,7 +131,7 @@ impl VolumeRenderer<'_> {
         pass.set_scissor_rect(left, top, width, height);
         pass.set_bind_group(0, &self.scene.frame.group, &[]);
         for (run, [in_front, behind]) in extruded.runs.iter().zip(&draws.runs) {
-            for draw in in_front.iter().chain(behind) {
+            for draw in in_front.iter().chain(behind).filter(|draw| draw.serves(of)) {
                 let key: FaceKey = face_key(extruded, draw, of, false);
                 let program = self.programs.get(&VolumeProgram::Faces(key), picture.format);
                 draw_faces(&mut pass, run, draw, program);

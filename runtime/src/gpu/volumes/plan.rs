@@ -10,7 +10,7 @@ use crate::plan::{Census, DrawPlan};
 use crate::stage::Stage;
 use crate::volumes::{CasterCounts, Casters};
 use std::collections::BTreeSet;
-use sunbake_shaders::{HardLight, VolumeUse};
+use sunbake_shaders::HardLight;
 
 /// What a light calls for.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,9 +43,9 @@ impl LightNeeds {
         self.runs > 1 && self.shaded > 0
     }
 
-    /// Whether something is counted in front of the surface (z-pass), or behind it.
+    /// Whether faces are counted in front of the surface (z-pass), or behind it.
     pub fn counts(&self, is_z_pass: bool) -> bool {
-        self.faces.iter().any(|key| key.of == VolumeUse::Stencil && key.is_z_pass == is_z_pass)
+        self.faces.iter().any(|key| key.counts(is_z_pass))
     }
 }
 

@@ -13,8 +13,9 @@ use sunbake_shaders::{Filter, HardLight, PageVariant, VolumeCorners, VolumeLight
 /// How far faces are moved away from the eye: in steps of depth and, in pixels, along their slope. Rasterisation
 /// moves corners by up to half of a 256th of a pixel, which on slanted faces is a change of depth.
 const BIAS: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -16, slope_scale: -1.0 / 128.0, clamp: 0.0 };
-/// The same towards the eye: caps on back faces.
-const BIAS_BEFORE: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: 16, slope_scale: 1.0 / 128.0, clamp: 0.0 };
+/// How far spared triangles are moved towards the eye: no farther than depths are rounded, since they are the surface
+/// that is seen.
+const SPARED_BIAS: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: 16, slope_scale: 0.0, clamp: 0.0 };
 /// Bits of the stencil, where one run counts all.
 const ALL_BITS: u32 = 0xff;
 /// Bits that count a run, where there are several.
@@ -74,7 +75,7 @@ pub struct FaceKey {
     pub light: VolumeLight,
     /// Where corners come from.
     pub corners: VolumeCorners,
-    /// [`Part::Walls`] for all parts where corners are listed.
+    /// [`Part::Walls`] for all faces where corners are listed.
     pub part: Part,
     /// What pixels are used for.
     pub of: VolumeUse,
@@ -82,8 +83,13 @@ pub struct FaceKey {
     pub is_z_pass: bool,
     /// Whether they are counted in runs.
     pub is_run: bool,
-    /// Whether they are caps on back faces, which are moved towards the eye.
-    pub is_before: bool,
+}
+
+impl FaceKey {
+    /// Whether faces are counted in front of the surface, or behind it. Spared triangles are no faces.
+    pub fn counts(&self, is_z_pass: bool) -> bool {
+        self.of == VolumeUse::Stencil && self.part != Part::Spared && self.is_z_pass == is_z_pass
+    }
 }
 
 /// How a light is blended with what the picture holds.
@@ -192,18 +198,24 @@ impl VolumeRenderer<'_> {
             (VolumeCorners::FromEdges, Part::Walls) => "wall_vertex",
             (VolumeCorners::FromEdges, Part::Caps) => "cap_vertex",
             (VolumeCorners::FromEdges, Part::DarkCaps) => "dark_cap_vertex",
+            (VolumeCorners::FromEdges, Part::Spared) => "spared_vertex",
         };
         let source = ShaderStages { text: &text, vertex, fragment: key.of.fragment(), attributes: &[] };
+        let is_spared = key.part == Part::Spared;
         let compare = match key.of {
+            _ if is_spared => wgpu::CompareFunction::GreaterEqual,
             VolumeUse::Stencil | VolumeUse::Visualize => wgpu::CompareFunction::Greater,
             // Faces behind the surface: those that fail the test of the stencil's pass.
             VolumeUse::Count => wgpu::CompareFunction::LessEqual,
             VolumeUse::Fill => wgpu::CompareFunction::Always,
         };
         let mut depth_stencil = depth_state(STENCIL_FORMAT, false, compare);
-        depth_stencil.bias = if key.is_before { BIAS_BEFORE } else { BIAS };
-        if key.of == VolumeUse::Stencil {
-            depth_stencil.stencil = counting(key.is_z_pass, if key.is_run { RUN_BITS } else { ALL_BITS });
+        depth_stencil.bias = if is_spared { SPARED_BIAS } else { BIAS };
+        let bits = if key.is_run { RUN_BITS } else { ALL_BITS };
+        if is_spared {
+            depth_stencil.stencil = sparing(bits);
+        } else if key.of == VolumeUse::Stencil {
+            depth_stencil.stencil = counting(key.is_z_pass, bits);
         }
         let target = key.of.fragment().map(|_| wgpu::ColorTargetState {
             format,
@@ -214,8 +226,10 @@ impl VolumeRenderer<'_> {
         let groups = [Some(&self.scene.frame.layout), Some(&layout)];
         // Faces end at infinity, where depth is 0. Their bias takes them below 0, where GPUs that clip depths per
         // pixel would cut them off.
-        let state =
-            PipelineState { clamps_depth: self.gpu.clamps_depth(), ..PipelineState::new(target, depth_stencil, true) };
+        let state = PipelineState {
+            clamps_depth: self.gpu.clamps_depth(),
+            ..PipelineState::new(target, depth_stencil, !is_spared)
+        };
         Program::new(self.gpu, &source, &groups, state)
     }
 }
@@ -229,9 +243,8 @@ pub fn face_key(extruded: &Extruded, draw: &FaceDraw, of: VolumeUse, is_z_pass: 
         corners,
         part: draw.part,
         of,
-        is_z_pass: is_z_pass && is_counted,
+        is_z_pass: is_z_pass && is_counted && draw.part != Part::Spared,
         is_run: extruded.runs.len() > 1 && is_counted,
-        is_before: draw.is_before,
     }
 }
 
@@ -254,6 +267,16 @@ fn counting(is_z_pass: bool, bits: u32) -> wgpu::StencilState {
         false => (face(DecrementWrap, Keep), face(IncrementWrap, Keep)),
     };
     wgpu::StencilState { front, back, read_mask: ALL_BITS, write_mask: bits }
+}
+
+/// Takes one from the count of what is seen.
+fn sparing(bits: u32) -> wgpu::StencilState {
+    let face = wgpu::StencilFaceState {
+        compare: wgpu::CompareFunction::Always,
+        pass_op: wgpu::StencilOperation::DecrementClamp,
+        ..wgpu::StencilFaceState::IGNORE
+    };
+    wgpu::StencilState { front: face, back: face, read_mask: ALL_BITS, write_mask: bits }
 }
 
 /// Draws where no volume was counted.

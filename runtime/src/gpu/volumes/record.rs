@@ -183,8 +183,8 @@ impl VolumeRenderer<'_> {
         format: wgpu::TextureFormat,
     ) {
         let Some(extruded) = &self.extruded[light_index] else { return };
-        let faces: Vec<FaceKey> =
-            draws.all().map(|(draw, is_z_pass)| face_key(extruded, draw, of, is_z_pass)).collect();
+        let drawn = draws.all().filter(|(draw, _)| draw.serves(of));
+        let faces: Vec<FaceKey> = drawn.map(|(draw, is_z_pass)| face_key(extruded, draw, of, is_z_pass)).collect();
         if let Some(light) = self.last.iter_mut().rfind(|light| light.light_index == light_index) {
             light.faces.extend(faces.iter().copied());
         }

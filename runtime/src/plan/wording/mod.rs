@@ -88,7 +88,7 @@ fn possible(effect: DrawEffect) -> &'static str {
         DrawEffect::SunVolumes => "the sun may be up",
         DrawEffect::ZPass => "the eye may be outside of volumes whose caps are hidden",
         DrawEffect::ZFail => "the eye may come into some volume, or a cap show",
-        DrawEffect::SmoothSolids => "some solids are smooth-shaded, and may cast from their back faces",
+        DrawEffect::SmoothSolids => "some solids are smooth-shaded, and their facets may turn away from the light",
         DrawEffect::SeveralRuns => "there are more than 255 triangles, which may overlap",
         _ => "something may be in shadow",
     }

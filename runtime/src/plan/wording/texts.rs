@@ -319,12 +319,12 @@ pub const TEXTS: [EffectText; 45] = [
     EffectText {
         effect: DrawEffect::SmoothSolids,
         name: "smooth-solids",
-        why_on: "some solids are smooth-shaded: they cast from their back faces",
+        why_on: "facets of smooth-shaded solids turn away from the light: their own volume does not shade them",
         why_off: "no solid that casts is smooth-shaded",
-        would_take: "a pipeline for caps on back faces, and z-fail for such solids",
-        also_takes: "z-fail for such solids",
+        would_take: "a pipeline that draws such facets into the stencil",
         off_by: "flat normals, or a set baked with --flat-terminator",
         on_by: "a closed mesh whose normals turn from corner to corner of a triangle",
+        ..NONE
     },
     EffectText {
         effect: DrawEffect::SilhouettesByGpu,

@@ -11,14 +11,21 @@ struct Wall {
 
 @group(1) @binding(2) var<storage, read> walls: array<Wall>;
 @group(1) @binding(3) var<storage, read> triangles: array<u32>;
-// How each triangle's prism counts (-1, 0 or 1) plus 1, two bits each.
+// How each triangle's prism counts (-1, 0 or 1) plus 1, two bits each. 3: not at all, and the triangle is spared.
 @group(1) @binding(4) var<storage, read> facings: array<u32>;
 
 const NO_TRIANGLE: u32 = 0xffffffffu;
 const NOWHERE = vec4<f32>(0.0, 0.0, 0.0, 1.0);
 
+const SPARED: u32 = 3u;
+
+fn facing_code(triangle: u32) -> u32 {
+    return (facings[triangle >> 4u] >> (2u * (triangle & 15u))) & 3u;
+}
+
 fn facing(triangle: u32) -> i32 {
-    return i32((facings[triangle >> 4u] >> (2u * (triangle & 15u))) & 3u) - 1;
+    let code = facing_code(triangle);
+    return select(i32(code) - 1, 0, code == SPARED);
 }
 
 // What a triangle along an edge adds to the winding of the edge's wall.
@@ -58,4 +65,13 @@ fn cap_corner(index: u32, extruded: u32) -> vec4<f32> {
 @vertex
 fn cap_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
     return cap_corner(index, 0u);
+}
+
+// A triangle that its own volume is not to shade.
+@vertex
+fn spared_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) @invariant vec4<f32> {
+    if facing_code(index / 3u) != SPARED {
+        return NOWHERE;
+    }
+    return corner(triangles[index]);
 }
