@@ -1,4 +1,4 @@
-//! M1 to M8: shadow maps where they are known to break. These tests need a GPU adapter, and fail without one.
+//! M1 to M9: shadow maps where they are known to break. These tests need a GPU adapter, and fail without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
@@ -335,5 +335,39 @@ fn m8_views_from_a_millimetre_to_a_hundred_kilometres_are_finite() {
         // A map of the whole scene has texels of tens of metres. Variants that follow the view still find the block's
         // shadow.
         assert!(!variant.follows_view() || error < 0.02, "{variant}: {error}");
+    }
+}
+
+#[test]
+fn m9_a_wall_that_the_sun_grazes_has_no_stripes() {
+    let gpu = gpu();
+    // A house whose east wall the sun sees by a quarter of a degree, and a slab that shades part of that wall.
+    let house = block(Vec3::new(-2.0, 0.0, -2.0), Vec3::new(2.0, 8.0, 2.0));
+    let slab = block(Vec3::new(0.0, 0.0, 4.0), Vec3::new(5.0, 7.5, 4.5));
+    let (sin, cos) = 0.25f64.to_radians().sin_cos();
+    let (rise, south) = 60f64.to_radians().sin_cos();
+    let stage = under_sun(ground().soup(&house).soup(&slab).build(), DVec3::new(sin, cos * rise, cos * south));
+    let moment = stage.moment(0.5);
+    let shot = Shot::new(&stage, view(&stage, DVec3::new(9.0, 5.0, -3.0), DVec3::new(2.0, 4.0, 0.0), SIZE));
+    for variant in UNTUNED.into_iter().filter(|&variant| variant != Variant::Ground) {
+        for size_texels in [128, 512] {
+            let seen = seen(&gpu, &shot, &moment, sized(variant, size_texels));
+            let (mut lit, mut shaded) = (0, 0);
+            for (i, place) in surface_points(&shot).into_iter().filter(|(_, place)| (place.x - 2.0).abs() < 1e-3) {
+                // The shadow ends here on the wall; filters reach less than a metre and a half on it.
+                let end_m = 7.5 - (4.0 - place.z) * rise / south;
+                let is_inside = place.z.abs() < 1.8 && (0.2..7.8).contains(&place.y);
+                if is_inside && place.y > end_m + 1.5 {
+                    lit += 1;
+                    // A disc that touches the wall's plane is seen in part.
+                    let least = if variant == Variant::Pcss { 0.5 } else { 0.999 };
+                    assert!(seen[i] >= least, "{variant} {size_texels}: {} at {place}", seen[i]);
+                } else if is_inside && place.y < end_m - 1.5 {
+                    shaded += 1;
+                    assert!(seen[i] <= 0.01, "{variant} {size_texels}: {} in shadow at {place}", seen[i]);
+                }
+            }
+            assert!(lit > 500 && shaded > 20, "{lit} {shaded}");
+        }
     }
 }

@@ -56,6 +56,8 @@ pub struct ShadowBias {
     pub normal: f32,
     /// The reach, in texels.
     pub reach: f32,
+    /// The reach where a texel is not compared with the receiver's plane, in texels.
+    pub reach_off_plane: f32,
     /// Whether texels are compared with the receiver's plane at their own centre.
     pub has_plane: bool,
 }
@@ -148,6 +150,7 @@ fn push_sun(text: &mut String, surface: SurfaceVariant, sun: &ShadowSource) {
                 slope: 0.0,
                 normal: 0.0,
                 reach: 0.0,
+                reach_off_plane: 0.0,
                 has_plane: false,
             };
             push_receiver(text, &bias, 0.0);
@@ -167,6 +170,8 @@ fn push_sun(text: &mut String, surface: SurfaceVariant, sun: &ShadowSource) {
                 ShadowFilter::Four => wgsl!("shadow_maps/filter_4"),
                 ShadowFilter::Penumbra => wgsl!("shadow_maps/filter_pcss"),
             });
+            let has_plane = bias.has_plane;
+            text.push_str(if has_plane { wgsl!("shadow_maps/lit_grazed") } else { wgsl!("shadow_maps/lit_plain") });
             text.push_str(match choice {
                 ShadowMapChoice::One => wgsl!("shadow_maps/maps_one"),
                 ShadowMapChoice::First => wgsl!("shadow_maps/maps_first"),
@@ -187,6 +192,7 @@ fn push_receiver(text: &mut String, bias: &ShadowBias, margin_texels: f32) {
         ("BIAS_SLOPE", bias.slope),
         ("BIAS_NORMAL", bias.normal),
         ("BIAS_REACH", bias.reach),
+        ("BIAS_REACH_OFF_PLANE", bias.reach_off_plane),
         ("MAP_MARGIN_TEXELS", margin_texels),
     ];
     // Writing to a string cannot fail.

@@ -81,6 +81,7 @@ fn shadow_sources() -> Vec<ShadowSource> {
                     slope: 0.0,
                     normal: 1.0,
                     reach: 1.0,
+                    reach_off_plane: 2.0,
                     has_plane: choice == ShadowMapChoice::One,
                 };
                 all.push(ShadowSource::Maps { filter, tap, choice, bias, margin_texels: 4.0 });

@@ -12,6 +12,8 @@
 //! * **Receiver plane** (Isidoro, "Shadow mapping: GPU-based tips and techniques", GDC 2006): each texel is compared
 //!   with the receiver's plane at that texel, so that wide filters need no more bias than narrow ones. In a concave
 //!   corner that faces the light a plane continues behind the other wall, and the filter darkens both near the corner.
+//!   Where the sun grazes, a plane leaves its surface within a texel: there receivers are offset along their normals
+//!   instead.
 //!
 //! A small bias for rounding and for the raster's own grid is always added: a 128th of a texel, a 256th of a pixel, and
 //! some steps of `f32`.

@@ -178,10 +178,7 @@ impl MapRenderer<'_> {
         let bias = &self.settings.bias;
         // How far the farthest texel of a comparison lies from the place that is compared, in texels.
         let tap_reach = match tap {
-            ShadowTap::Filtered => 1.0,
-            // Each texel is compared with the plane at the texel itself.
-            _ if bias.has_plane => 0.0,
-            ShadowTap::Gathered => 1.0,
+            ShadowTap::Filtered | ShadowTap::Gathered => 1.0,
             ShadowTap::Manual | ShadowTap::Nearest => 0.5,
         };
         let filter_reach = match filter {
@@ -194,7 +191,14 @@ impl MapRenderer<'_> {
             constant_texels: bias.constant_texels as f32,
             slope: bias.slope as f32,
             normal: bias.normal as f32,
-            reach: if bias.has_plane { tap_reach } else { tap_reach + filter_reach },
+            reach: match (bias.has_plane, tap) {
+                (false, _) => tap_reach + filter_reach,
+                (true, ShadowTap::Filtered) => tap_reach,
+                // Each texel is compared with the plane at the texel itself.
+                (true, _) => 0.0,
+            },
+            // Half a texel more: those of a perspective map grow along the way.
+            reach_off_plane: tap_reach + filter_reach + 0.5,
             has_plane: bias.has_plane,
         }
     }

@@ -16,6 +16,12 @@ fn on_spiral(i: u32, count: u32, turn_rad: f32) -> vec2<f32> {
     return sqrt((f32(i) + 0.5) / f32(count)) * vec2<f32>(cos(angle_rad), sin(angle_rad));
 }
 
+// Moves places on the surface's own side to the other: a ray that leaves there meets the surface, and how much of the
+// sun's disc that hides is known without looking.
+fn off_surface(at: Receiver, place: vec2<f32>) -> vec2<f32> {
+    return place - 2.0 * min(dot(place, at.outward), 0.0) * at.outward;
+}
+
 // Mean distance of what lies between the receiver and some of the sun, in metres along the light; negative where
 // nothing does.
 fn blocker_distance_m(at: Receiver, slope: f32, metres_per_depth: f32, turn_rad: f32) -> f32 {
@@ -25,7 +31,7 @@ fn blocker_distance_m(at: Receiver, slope: f32, metres_per_depth: f32, turn_rad:
     var sum_m = 0.0;
     var count = 0.0;
     for (var i = 0u; i < BLOCKER_TAPS; i++) {
-        let offset_m = on_spiral(i, BLOCKER_TAPS, turn_rad) * reach_m;
+        let offset_m = off_surface(at, on_spiral(i, BLOCKER_TAPS, turn_rad)) * reach_m;
         let texel = clamp(floor((at.uv + offset_m / at.metres_per_uv) * size), vec2<f32>(0.0), vec2<f32>(size - 1.0));
         let stored = textureLoad(shadow_depths, vec2<i32>(texel), at.map, 0);
         let in_front_m = (depth_at(at, (texel + 0.5) / size) - stored) * metres_per_depth;
@@ -50,7 +56,7 @@ fn shadow_filter(at: Receiver, pixel: vec2<f32>) -> f32 {
     let radius_texels = max(distance_m * slope / at.metres_per_uv * size, vec2<f32>(LEAST_RADIUS_TEXELS));
     var lit = 0.0;
     for (var i = 0u; i < FILTER_TAPS; i++) {
-        lit += shadow_tap(at, on_spiral(i, FILTER_TAPS, turn_rad) * radius_texels);
+        lit += shadow_tap(at, off_surface(at, on_spiral(i, FILTER_TAPS, turn_rad)) * radius_texels);
     }
     return lit / f32(FILTER_TAPS);
 }

@@ -11,7 +11,7 @@ fn shadow_visibility(from_eye_m: vec3<f32>, geometric_normal: vec3<f32>, pixel: 
         if !is_on_map(place, MAP_MARGIN_TEXELS) {
             continue;
         }
-        let visibility = shadow_filter(receiver_on_map(map, place, from_eye_m, geometric_normal), pixel);
+        let visibility = lit_on_map(map, place, from_eye_m, geometric_normal, pixel);
         let border = max(abs(place.x), abs(place.y)) / most;
         let next_share = smoothstep(BLEND_FROM, 1.0, border);
         if map + 1 == i32(shadow_maps.count) || next_share == 0.0 {
@@ -21,7 +21,7 @@ fn shadow_visibility(from_eye_m: vec3<f32>, geometric_normal: vec3<f32>, pixel: 
         if !is_on_map(next_place, MAP_MARGIN_TEXELS) {
             return visibility;
         }
-        let next = shadow_filter(receiver_on_map(map + 1, next_place, from_eye_m, geometric_normal), pixel);
+        let next = lit_on_map(map + 1, next_place, from_eye_m, geometric_normal, pixel);
         return mix(visibility, next, next_share);
     }
     return 1.0;

@@ -3,7 +3,7 @@ fn shadow_visibility(from_eye_m: vec3<f32>, geometric_normal: vec3<f32>, pixel: 
     for (var map = 0; map < i32(shadow_maps.count); map++) {
         let place = place_on_map(map, from_eye_m);
         if is_on_map(place, MAP_MARGIN_TEXELS) {
-            return shadow_filter(receiver_on_map(map, place, from_eye_m, geometric_normal), pixel);
+            return lit_on_map(map, place, from_eye_m, geometric_normal, pixel);
         }
     }
     return 1.0;

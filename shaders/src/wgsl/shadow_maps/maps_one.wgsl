@@ -4,5 +4,5 @@ fn shadow_visibility(from_eye_m: vec3<f32>, geometric_normal: vec3<f32>, pixel: 
     if !is_on_map(place, 0.0) {
         return 1.0;
     }
-    return shadow_filter(receiver_on_map(0, place, from_eye_m, geometric_normal), pixel);
+    return lit_on_map(0, place, from_eye_m, geometric_normal, pixel);
 }

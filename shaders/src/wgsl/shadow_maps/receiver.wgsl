@@ -9,6 +9,8 @@ struct Receiver {
     depth_per_uv: vec2<f32>,
     // Across the light, metres to a unit of u and of v.
     metres_per_uv: vec2<f32>,
+    // Away from its surface across the light, unit length, where it is moved off its plane; else 0.
+    outward: vec2<f32>,
 }
 
 // Steps of f32 that places and depths are off by.
@@ -28,7 +30,14 @@ fn is_on_map(place: vec3<f32>, margin_texels: f32) -> bool {
     return place.z > 0.0 && max(abs(place.x), abs(place.y)) <= most;
 }
 
-fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_normal: vec3<f32>) -> Receiver {
+// `off_plane`: moved along its normal instead of compared with its plane.
+fn receiver_on_map(
+    map: i32,
+    place: vec3<f32>,
+    from_eye_m: vec3<f32>,
+    geometric_normal: vec3<f32>,
+    off_plane: bool,
+) -> Receiver {
     let matrix = shadow_maps.maps[map].clip_from_point;
     let rows = transpose(matrix);
     let sun = frame.sun_direction;
@@ -44,7 +53,8 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let texel_m = max(length(step_u), length(step_v)) * texel;
     let facing = max(dot(geometric_normal, sun), 1.0 / 4096.0);
     let raster_m = corner_m / 128.0 + length(from_eye_m) * (frame.pixel_angle_rad / 256.0 + ROUNDING);
-    let off_surface_m = BIAS_NORMAL * BIAS_REACH * corner_m + raster_m;
+    let normal_reach = select(BIAS_NORMAL * BIAS_REACH, BIAS_REACH_OFF_PLANE, off_plane);
+    let off_surface_m = normal_reach * corner_m + raster_m;
     let towards_sun_m = BIAS_CONSTANT_M + BIAS_CONSTANT_TEXELS * texel_m + BIAS_SLOPE * BIAS_REACH * corner_m / facing;
     let unbiased_m = from_eye_m + shadow_maps.maps[map].eye_from_origin_m;
     let point_m = unbiased_m + geometric_normal * off_surface_m + sun * towards_sun_m;
@@ -57,6 +67,12 @@ fn receiver_on_map(map: i32, place: vec3<f32>, from_eye_m: vec3<f32>, geometric_
     let along_v = step_v - sun * (dot(geometric_normal, step_v) / facing);
     let depth_row = rows[2].xyz - rows[3].xyz * at.depth;
     at.depth_per_uv = vec2<f32>(dot(depth_row, along_u), dot(depth_row, along_v)) / clip.w;
+    at.outward = vec2<f32>(0.0);
+    if off_plane {
+        at.depth_per_uv = vec2<f32>(0.0);
+        let rise = vec2<f32>(dot(geometric_normal, step_u), dot(geometric_normal, step_v));
+        at.outward = normalize(rise / vec2<f32>(length(step_u), length(step_v)));
+    }
     at.depth -= ROUNDING * (1.0 + abs(at.depth_per_uv.x) + abs(at.depth_per_uv.y));
     at.metres_per_uv = vec2<f32>(length(step_u), length(step_v));
     return at;
