@@ -193,7 +193,8 @@ fn suspects(scene: &Scene, rays: &[Ray]) -> Vec<Occluder> {
             continue;
         }
         let group = Group::new(instances, rays);
-        let is_telling = group.instances.iter().any(|&index| is_telling(scene, index as usize));
+        // A water tank does not make all galvanised iron water.
+        let is_telling = group.instances.iter().all(|&index| is_telling(scene, index as usize));
         if group.is_suspicious(is_telling) {
             named.extend(&group.instances);
             let (object, name) = label_of(scene, &group.instances);
@@ -278,6 +279,18 @@ mod tests {
         let telling = found(&yard().soup_of(&shell, named("crate_Collision.001")).build());
         assert_eq!(telling[0].0, "crate_Collision.001");
         assert_eq!(found(&yard().soup_of(&shell, named("cupboard")).build()), []);
+    }
+
+    #[test]
+    fn a_material_is_named_for_the_names_of_objects_only_if_all_of_them_tell() {
+        // Two shells in one place: neither alone hides anything.
+        let shell = block(Vec3::new(-1.2, 0.0, -1.2), Vec3::new(1.2, 2.0, 1.2));
+        let mut scene = yard().soup_of(&shell, named("iron")).soup_of(&shell, named("iron")).build();
+        scene.meshes[3].material = scene.meshes[2].material;
+        scene.nodes[2].name = Some("water".into());
+        assert_eq!(found(&scene), []);
+        scene.nodes[3].name = Some("water.001".into());
+        assert_eq!(found(&scene)[0].0, "iron");
     }
 
     #[test]
