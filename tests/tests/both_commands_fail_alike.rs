@@ -15,7 +15,7 @@ struct Mistake {
     words: &'static [&'static str],
 }
 
-const MISTAKES: [Mistake; 19] = [
+const MISTAKES: [Mistake; 20] = [
     Mistake {
         name: "an unknown command",
         arguments: ["frobnicate", "frobnicate"],
@@ -39,6 +39,12 @@ const MISTAKES: [Mistake; 19] = [
         arguments: ["bake scene.glb -o out --place Vienna", "frame scene.glb -o out.png --place Vienna"],
         code: 1,
         words: &["not a place", "48.2,16.4"],
+    },
+    Mistake {
+        name: "more threads than are of use",
+        arguments: ["bake scene.glb -o out --threads 1000000", "compare scene.glb -o out --threads 1000000"],
+        code: 5,
+        words: &["cannot start 1000000 threads: 1024 are the most", "lower --threads"],
     },
     Mistake {
         name: "a day that does not exist",

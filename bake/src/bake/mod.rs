@@ -89,8 +89,19 @@ pub fn bake_scene(scene: &Scene, settings: &BakeSettings, progress: &dyn Progres
     })?
 }
 
+/// Most threads that are started. A million take minutes to start, and the machine with them.
+const MOST_THREADS: usize = 1024;
+
+/// What makes a pool of threads; 0 is one per core.
+pub(crate) fn of_threads(threads: usize) -> Result<rayon::ThreadPoolBuilder, BakeError> {
+    if threads > MOST_THREADS {
+        return Err(BakeError::Threads { threads, reason: format!("{MOST_THREADS} are the most") });
+    }
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads))
+}
+
 fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, BakeError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = of_threads(threads)?.build();
     Ok(pool.map_err(|e| BakeError::Threads { threads, reason: e.to_string() })?.install(work))
 }
 

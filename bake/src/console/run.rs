@@ -85,7 +85,7 @@ pub fn set_threads(threads: usize) -> Result<(), Failure> {
     if threads == 0 {
         return Ok(());
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let pool = crate::bake::of_threads(threads)?.build_global();
     Ok(pool.map_err(|error| BakeError::Threads { threads, reason: error.to_string() })?)
 }
 

@@ -198,6 +198,6 @@ fn no_sun(prepared: &Prepared) -> CostError {
 }
 
 fn pool(threads: usize) -> Result<rayon::ThreadPool, BakeError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = crate::bake::of_threads(threads)?.build();
     pool.map_err(|error| BakeError::Threads { threads, reason: error.to_string() })
 }
