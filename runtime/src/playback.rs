@@ -1,13 +1,13 @@
 //! Maps evaluated on the CPU: twins of the shaders in `wgsl/baked`, `wgsl/ambient` and `wgsl/lamp/baked*.wgsl`, around
-//! [`sunbake::maps::soft_visibility`] and [`sunbake::maps::hard_visibility`].
+//! [`sunbake::maps::soft_visibility`], [`sunbake::maps::hard_visibility`] and [`sunbake::maps::edge_sample`].
 
 use crate::light::{Daylight, LampMoment, Moment};
 use glam::{IVec2, Vec2, Vec3};
 use sunbake::ambient::harmonics;
 use sunbake::atlas::{Footprint, PageSize};
 use sunbake::maps::{
-    AmbientMaps, AmbientSide, AmbientTextures, Bits, PageMaps, decode_share, decode_signed, hard_visibility,
-    soft_visibility,
+    AmbientMaps, AmbientSide, AmbientTextures, Bits, LayerMaps, PageMaps, decode_share, decode_signed, edge_sample,
+    hard_visibility, sharpened, soft_visibility,
 };
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
@@ -54,28 +54,42 @@ impl<'a> Page<'a> {
         Self { maps, bits, variant: page_variant(maps, bits, radius_rad) }
     }
 
+    /// Lanes that store any time.
+    fn lanes(&self) -> impl Iterator<Item = (&[LayerMaps], &LaneVariant)> {
+        let lanes = self.maps.lanes.iter().zip(&self.variant.lanes);
+        lanes.map(|(lane, variant)| (lane.layers.as_slice(), variant)).filter(|(layers, _)| !layers.is_empty())
+    }
+
     fn disc_visibility(&self, texel: usize, moment: &Moment) -> f32 {
         let mut visibility = 0.0;
-        for (lane, variant) in self.maps.lanes.iter().zip(&self.variant.lanes).filter(|(l, _)| !l.layers.is_empty()) {
+        for (layers, variant) in self.lanes() {
             visibility += variant.weight
                 * match self.variant.is_point_sun {
-                    true => hard_visibility(&lane.layers, texel, self.bits, moment.t),
-                    false => soft_visibility(&lane.layers, texel, self.bits, moment.t, moment.width_t * variant.chord),
+                    true => hard_visibility(layers, texel, self.bits, moment.t),
+                    false => soft_visibility(layers, texel, self.bits, moment.t, moment.width_t * variant.chord),
                 };
         }
         visibility
     }
 
     fn page_visibility(&self, page_uv: Vec2, filter: Filter, moment: &Moment) -> f32 {
-        self.filtered(page_uv, filter, |texel| self.disc_visibility(texel, moment))
+        match filter {
+            Filter::Nearest => self.disc_visibility(self.nearest_texel(page_uv), moment),
+            Filter::Bilinear => self.footprint(page_uv).blend(|texel| self.disc_visibility(texel, moment)),
+            Filter::Sharp => {
+                let footprint = self.footprint(page_uv);
+                let mut visibility = 0.0;
+                for (layers, variant) in self.lanes() {
+                    let width_t = if self.variant.is_point_sun { 0.0 } else { moment.width_t * variant.chord };
+                    visibility += variant.weight * self.sharp_visibility(layers, &footprint, moment.t, width_t);
+                }
+                visibility
+            }
+        }
     }
 
-    /// A value of texels (indices are `y * width + x`), filtered at a point of the page.
-    fn filtered(&self, page_uv: Vec2, filter: Filter, value: impl Fn(usize) -> f32) -> f32 {
-        match filter {
-            Filter::Nearest => value(self.nearest_texel(page_uv)),
-            Filter::Bilinear => self.footprint(page_uv).blend(value),
-        }
+    fn sharp_visibility(&self, layers: &[LayerMaps], footprint: &Footprint, t: f32, width_t: f32) -> f32 {
+        sharpened(footprint.blend(|texel| edge_sample(layers, texel, self.bits, t, width_t)))
     }
 
     fn nearest_texel(&self, page_uv: Vec2) -> usize {
@@ -127,8 +141,13 @@ impl<'a> Page<'a> {
         if sphere_share <= 0.0 {
             return 0.0;
         }
-        let visibility = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
-        sphere_share.min(self.filtered(page_uv, filter, visibility))
+        let of_texel = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
+        let visibility = match filter {
+            Filter::Nearest => of_texel(self.nearest_texel(page_uv)),
+            Filter::Bilinear => self.footprint(page_uv).blend(of_texel),
+            Filter::Sharp => self.sharp_visibility(layers, &self.footprint(page_uv), lamp.t, lamp.width_t),
+        };
+        sphere_share.min(visibility)
     }
 
     /// Ambient light on a surface, linear. `normal` is turned to the eye; `is_back` says that the eye is behind the

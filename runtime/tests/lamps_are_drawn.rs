@@ -48,6 +48,7 @@ fn the_gpu_agrees_with_its_twin_about_a_lamp() {
     for (has_sun, radius_m, bits, filter) in [
         (false, 0.15, Bits::Sixteen, Filter::Bilinear),
         (true, 0.15, Bits::Eight, Filter::Bilinear),
+        (true, 0.15, Bits::Sixteen, Filter::Sharp),
         (false, 0.0, Bits::Sixteen, Filter::Nearest),
     ] {
         let stage = stage(has_sun, radius_m, bits);

@@ -101,7 +101,8 @@ fn everything(wrap: Wrap) -> Scene {
 fn posts_on_a_floor() {
     let gpu = gpu();
     let stage = bake(posts(), Some(equinox(35.0)), 20, Bits::Sixteen);
-    for (name, filter) in [("posts bilinear", Filter::Bilinear), ("posts nearest", Filter::Nearest)] {
+    for filter in [Filter::Bilinear, Filter::Sharp, Filter::Nearest] {
+        let name = &format!("posts {filter:?}");
         assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
     }
 }
@@ -141,7 +142,8 @@ fn posts_under_a_sun_without_width() {
     let mut point = equinox(35.0);
     point.angular_radius_rad = 0.0;
     let stage = bake(posts(), Some(point), 20, Bits::Sixteen);
-    for (name, filter) in [("point sun bilinear", Filter::Bilinear), ("point sun nearest", Filter::Nearest)] {
+    for filter in [Filter::Bilinear, Filter::Sharp, Filter::Nearest] {
+        let name = &format!("point sun {filter:?}");
         assert_agreement(&compare(name, &gpu, &stage, DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0), filter));
     }
 }
@@ -154,9 +156,11 @@ fn posts_under_a_disc_of_lanes() {
         wide.angular_radius_rad = 0.03;
         let stage = bake_lanes(posts(), Some(wide), 16, Bits::Sixteen, lane_count);
         assert_eq!(stage.pages[0].lanes.len(), lane_count);
-        let name = format!("posts, {lane_count} lanes");
         let eye = DVec3::new(5.0, 4.0, 9.0);
-        assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), Filter::Bilinear));
+        for filter in [Filter::Bilinear, Filter::Sharp] {
+            let name = format!("posts, {lane_count} lanes, {filter:?}");
+            assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), filter));
+        }
     }
 }
 

@@ -63,6 +63,8 @@ pub enum Filter {
     /// Four texels, each evaluated, then blended.
     #[default]
     Bilinear,
+    /// The same, and edges of shadows drawn sharply between texels: their distances in time are blended as well.
+    Sharp,
 }
 
 /// A lane across the sun's disc, as a page stores it.
@@ -163,7 +165,7 @@ fn push_shade(text: &mut String, look: LookVariant, page: &PageVariant, has_lamp
 /// ambient light is read.
 pub fn open_lit_shader(surface: SurfaceVariant, page: &PageVariant, has_lamp: bool) -> String {
     let page = PageVariant { lanes: Vec::new(), lamp_layer_count: 0, ..page.clone() };
-    let mut text = on_surface(surface, &page);
+    let mut text = on_surface(surface, &page, Filter::default());
     text.push_str(wgsl!("baked/sun_open"));
     text.push_str(&match has_lamp {
         true => [wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("lamp/open")].concat(),
@@ -199,7 +201,7 @@ pub fn visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Fi
 
 /// The visibility pass of a lamp: entry points `surface_vertex` and `lamp_visibility_fragment`.
 pub fn lamp_visibility_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
-    let mut text = on_surface(surface, page);
+    let mut text = on_surface(surface, page, filter);
     push_lamp(&mut text, page, filter);
     text.push_str(wgsl!("lamp/visibility_fragment"));
     text
@@ -226,17 +228,17 @@ fn constants() -> String {
 }
 
 /// How every program that lights a surface begins.
-pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant) -> String {
+pub(crate) fn on_surface(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
     let mut text = [wgsl!("frame/frame"), wgsl!("frame/camera_projection")].concat();
     push_alpha_mask(&mut text, surface, &surface_vertex_wgsl(surface, None));
     text.push_str(wgsl!("surface/facing"));
     text.push_str(if surface.is_smooth { wgsl!("surface/gate_smooth") } else { wgsl!("surface/gate_flat") });
-    push_evaluation(&mut text, page);
+    push_evaluation(&mut text, page, filter);
     text
 }
 
 /// What evaluates a page's maps: the texels around a page coordinate, and the lit share of stored times.
-fn push_evaluation(text: &mut String, page: &PageVariant) {
+fn push_evaluation(text: &mut String, page: &PageVariant, filter: Filter) {
     let (has_sun, has_lamp) = (page.layer_count() > 0, page.lamp_layer_count > 0);
     if page.reads_texels() {
         text.push_str(wgsl!("baked/footprint"));
@@ -245,6 +247,12 @@ fn push_evaluation(text: &mut String, page: &PageVariant) {
     if has_sun || has_lamp {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
+    }
+    if filter == Filter::Sharp {
+        if has_sun || has_lamp {
+            text.push_str(wgsl!("baked/edge_sample"));
+        }
+        return;
     }
     if has_sun && page.is_point_sun {
         text.push_str(wgsl!("baked/hard_visibility"));
@@ -274,26 +282,27 @@ fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
         text.push_str(wgsl!("lamp/none"));
         return;
     }
-    text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/maps"), wgsl!("lamp/baked_texel")].concat());
-    text.push_str(match filter {
-        Filter::Nearest => wgsl!("lamp/baked_nearest"),
-        Filter::Bilinear => wgsl!("lamp/baked_bilinear"),
+    text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/maps")].concat());
+    text.push_str(&match filter {
+        Filter::Nearest => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_nearest")].concat(),
+        Filter::Bilinear => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_bilinear")].concat(),
+        Filter::Sharp => wgsl!("lamp/baked_sharp").to_owned(),
     });
     text.push_str(wgsl!("lamp/to_lamp"));
     text.push_str(wgsl!("lamp/baked"));
 }
 
 fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> String {
-    let mut text = on_surface(surface, page);
+    let mut text = on_surface(surface, page, filter);
     if page.layer_count() == 0 {
         text.push_str(wgsl!("baked/sun_none"));
         return text;
     }
     text.push_str(wgsl!("baked/sun_maps"));
-    text.push_str(&disc_visibility(&page.lanes, page.is_point_sun));
-    text.push_str(match filter {
-        Filter::Nearest => wgsl!("baked/sun_nearest"),
-        Filter::Bilinear => wgsl!("baked/sun_bilinear"),
+    text.push_str(&match filter {
+        Filter::Nearest => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_nearest")].concat(),
+        Filter::Bilinear => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_bilinear")].concat(),
+        Filter::Sharp => [wgsl!("baked/sun_sharp"), &sharp_visibility(&page.lanes, page.is_point_sun)].concat(),
     });
     text.push_str(if page.is_point_sun { wgsl!("baked/sun_point") } else { wgsl!("baked/sun") });
     text
@@ -326,6 +335,27 @@ pub(crate) fn push_alpha_mask(text: &mut String, surface: SurfaceVariant, vertex
     } else {
         text.push_str(wgsl!("surface/alpha_mask_none"));
     }
+}
+
+/// The same sum for the sharp filter, which works on each lane by itself.
+fn sharp_visibility(lanes: &[LaneVariant], is_point_sun: bool) -> String {
+    let mut text = String::from(
+        "fn page_visibility(page_uv: vec2<f32>) -> f32 {\n    let at = footprint(page_uv, \
+         textureDimensions(rise_map));\n    var visibility = 0.0;\n",
+    );
+    let mut first = 0;
+    for lane in lanes.iter().filter(|lane| lane.layer_count > 0) {
+        let end = first + lane.layer_count;
+        let weight = lane.weight;
+        let width = if is_point_sun { "0.0".to_owned() } else { format!("frame.width_t * {:?}", lane.chord) };
+        let _ = writeln!(
+            text,
+            "    visibility += {weight:?} * lane_visibility(at, vec2<i32>({first}, {end}), frame.t, {width});"
+        );
+        first = end;
+    }
+    text.push_str("    return visibility;\n}\n");
+    text
 }
 
 /// The sum over lanes, written out: their number, layers, weights and chords are constants of the page.

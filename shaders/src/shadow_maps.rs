@@ -124,7 +124,7 @@ pub fn blur_shader() -> String {
 /// The lit pass under shadow maps: entry points `surface_vertex` and `lit_fragment`. The lamp is read from the page's
 /// maps.
 pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Filter, sun: &ShadowSource) -> String {
-    let mut text = on_surface(surface, page);
+    let mut text = on_surface(surface, page, filter);
     push_sun(&mut text, surface, sun);
     end_of_lit(&mut text, surface.look, page, filter);
     text
@@ -132,7 +132,7 @@ pub fn mapped_lit_shader(surface: SurfaceVariant, page: &PageVariant, filter: Fi
 
 /// The visibility pass under shadow maps: entry points `surface_vertex` and `visibility_fragment`.
 pub fn mapped_visibility_shader(surface: SurfaceVariant, sun: &ShadowSource) -> String {
-    let mut text = on_surface(surface, &PageVariant::default());
+    let mut text = on_surface(surface, &PageVariant::default(), Filter::default());
     push_sun(&mut text, surface, sun);
     text.push_str(wgsl!("surface/visibility_fragment"));
     text

@@ -1,7 +1,7 @@
 //! Shaders of shadow volumes and of point lights.
 
 use crate::compose::{on_surface, push_surface, wgsl};
-use crate::{PageVariant, SurfaceVariant};
+use crate::{Filter, PageVariant, SurfaceVariant};
 
 /// A light that extrudes volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -104,7 +104,7 @@ impl HardLight {
 
 /// WGSL that adds a point light on surfaces.
 pub fn hard_light_shader(surface: SurfaceVariant, light: HardLight) -> String {
-    let mut text = on_surface(surface, &PageVariant::default());
+    let mut text = on_surface(surface, &PageVariant::default(), Filter::default());
     if matches!(light, HardLight::LampMask | HardLight::Lamp) {
         text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/to_lamp"), wgsl!("volumes/lamp_facing")].concat());
     }

@@ -117,7 +117,7 @@ fn every_composed_shader_is_valid() {
             validated(&hard_light_shader(surface, light));
         }
         for page in pages() {
-            for filter in [Filter::Nearest, Filter::Bilinear] {
+            for filter in [Filter::Nearest, Filter::Bilinear, Filter::Sharp] {
                 validated(&lit_shader(surface, &page, filter));
                 validated(&visibility_shader(surface, &page, filter));
                 validated(&lamp_visibility_shader(surface, &page, filter));

@@ -76,7 +76,9 @@ fn most_light(stage: &Stage, numbers: &mut Numbers, is_inside: impl Fn(&SurfaceP
             let page_uv = a * (1.0 - u - v) as f32 + b * u as f32 + c * v as f32;
             let page = &pages[chart.page as usize];
             for moment in &moments {
-                most[0] = most[0].max(page.sun_visibility(page_uv, normal, Filter::Bilinear, moment));
+                for filter in [Filter::Bilinear, Filter::Sharp] {
+                    most[0] = most[0].max(page.sun_visibility(page_uv, normal, filter, moment));
+                }
                 let sky = AmbientSky::new(moment, &pages);
                 most[1] = most[1].max(page.ambient_light(page_uv, Vec3::Y, false, &sky).max_element());
             }

@@ -1,10 +1,18 @@
-//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl` and `hard_visibility.wgsl` in
-//! `shaders/src/wgsl/baked`, with the same names in the same order.
+//! Visibility from stored codes: the CPU twins of `soft_visibility.wgsl`, `hard_visibility.wgsl` and `edge_sample.wgsl`
+//! in `shaders/src/wgsl/baked`, with the same names in the same order.
 //!
 //! While the sun's disc crosses a shadow's edge it is approximated by a line along its path (linear light). With w the
 //! sun's width in t, `soft(t) = 1/w * length(lit ∩ [t - w/2, t + w/2])`.
+//!
+//! **The sharp filter.** Where a shadow's edge passes between two texels, it passes them at different times, and the
+//! time at which it passes a point between them is close to the blend of those two. So the signed distance in time from
+//! the nearest edge is blended (as signed distances in space are for glyphs: Green, "Improved alpha-tested magnification
+//! for vector textures and special effects", SIGGRAPH 2007) and evaluated at the point. What the blend of visibilities
+//! knows beyond the nearest edge is kept: `blend(soft) + ramp(blend(d)) - blend(ramp(d))`, with `ramp(d) = d + 1/2`
+//! between 0 and 1. At a texel's centre that is `soft`; it is continuous in time and across texels.
 
 use super::{Bits, LayerMaps};
+use glam::Vec3;
 
 /// Share of the sun that a texel sees at `t`, in [0, 1].
 ///
@@ -39,6 +47,45 @@ pub fn hard_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32) -
         }
     }
     0.0
+}
+
+/// Distance in time beyond which an edge says nothing, in widths of the light.
+const SHARP_REACH: f32 = 16.0;
+
+/// Visibility of a lone edge at a signed distance in widths of the light.
+fn ramp(distance: f32) -> f32 {
+    (0.5 + distance).clamp(0.0, 1.0)
+}
+
+/// What the sharp filter blends of a texel: visibility as of [`soft_visibility`], the signed distance in time from the
+/// nearest edge in widths of the light (positive in light), and the visibility that this distance alone would mean. The
+/// path's ends are no edges.
+pub fn edge_sample(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, width_t: f32) -> Vec3 {
+    let max_code = f32::from(bits.max_code());
+    let width_codes = (width_t * max_code).max(1.0);
+    let now = t * max_code;
+    let window_start = now - 0.5 * width_codes;
+    let window_end = now + 0.5 * width_codes;
+    let reach = SHARP_REACH * width_codes;
+    let mut lit_codes = 0.0;
+    let mut distance = -reach;
+    for layer in layers {
+        for c in 0..4 {
+            let rise = f32::from(layer.rise[texel][c]);
+            let fall = f32::from(layer.fall[texel][c]);
+            lit_codes += (fall.min(window_end) - rise.max(window_start)).max(0.0);
+            let after_rise = if rise == 0.0 { reach } else { now - rise };
+            let before_fall = if fall == max_code { reach } else { fall - now };
+            distance = distance.max(after_rise.min(before_fall));
+        }
+    }
+    let distance_widths = distance.min(reach) / width_codes;
+    Vec3::new((lit_codes / width_codes).min(1.0), distance_widths, ramp(distance_widths))
+}
+
+/// Visibility from blended samples of texels.
+pub fn sharpened(blended: Vec3) -> f32 {
+    (blended.x + ramp(blended.y) - blended.z).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

@@ -303,6 +303,8 @@ pub enum FilterChoice {
     Bilinear,
     /// One texel, unfiltered: blocky.
     Nearest,
+    /// As bilinear, and edges of shadows drawn sharply between texels.
+    Sharp,
 }
 
 impl From<FilterChoice> for Filter {
@@ -310,6 +312,7 @@ impl From<FilterChoice> for Filter {
         match choice {
             FilterChoice::Bilinear => Self::Bilinear,
             FilterChoice::Nearest => Self::Nearest,
+            FilterChoice::Sharp => Self::Sharp,
         }
     }
 }

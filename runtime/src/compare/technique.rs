@@ -39,7 +39,11 @@ impl Display for TechniqueSpec {
     fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
         match self {
             Self::Baked(Playback { bits, lanes, filter }) => {
-                let filter = if *filter == Filter::Nearest { "nearest" } else { "filtered" };
+                let filter = match filter {
+                    Filter::Nearest => "nearest",
+                    Filter::Bilinear => "filtered",
+                    Filter::Sharp => "sharp",
+                };
                 write!(f, "baked:{}:lanes{lanes}:{filter}", bits.count())
             }
             Self::Volumes(mode) => write!(f, "{mode}"),
@@ -93,7 +97,7 @@ impl TechniqueSpec {
         let mut all = Vec::new();
         for &lanes in lane_counts {
             for &bits in bits {
-                for filter in [Filter::Bilinear, Filter::Nearest] {
+                for filter in [Filter::Bilinear, Filter::Sharp, Filter::Nearest] {
                     all.push(Self::Baked(Playback { bits, lanes, filter }));
                 }
             }
@@ -187,8 +191,8 @@ mod tests {
 
     #[test]
     fn a_part_of_a_name_means_all_that_have_it() {
-        assert_eq!(names(&[]).unwrap().len(), 8 + 1 + 10 + 1);
-        assert_eq!(names(&["baked"]).unwrap().len(), 8);
+        assert_eq!(names(&[]).unwrap().len(), 12 + 1 + 10 + 1);
+        assert_eq!(names(&["baked"]).unwrap().len(), 12);
         assert_eq!(names(&["baked:8:nearest"]).unwrap(), ["baked:8:lanes1:nearest", "baked:8:lanes3:nearest"]);
         assert_eq!(names(&["baked:16:lanes3:bilinear"]).unwrap(), ["baked:16:lanes3:filtered"]);
         assert_eq!(names(&["map:pcf4", "volumes"]).unwrap(), ["volumes", "map:pcf4"]);
