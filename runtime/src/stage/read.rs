@@ -173,7 +173,7 @@ mod tests {
     use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
     use sunbake::sun::DayRequest;
     use sunbake::testing::{SceneBuilder, floor};
-    use sunbake_shaders::Filter;
+    use sunbake_shaders::{AmbientModel, Filter};
 
     /// A lit picture at noon, on the CPU.
     fn noon(stage: &Stage) -> Vec<Vec3> {
@@ -204,5 +204,24 @@ mod tests {
         // The manifest keeps angles in degrees, so that those of a path may differ in their last bit.
         let worst = in_memory.iter().zip(&on_disk).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
         assert!(worst < 1e-5, "{worst}");
+    }
+
+    #[test]
+    fn what_takes_no_shadow_leaves_the_rest_its_ambient_light() {
+        let mut scene = SceneBuilder::new()
+            .soup(&floor(Vec2::splat(-3.0), Vec2::splat(3.0), 0.0))
+            .block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 1.5, 0.5))
+            .build();
+        scene.instances[1].role.receives = false;
+        let settings = BakeSettings {
+            page_size_texels: 64,
+            ambient: Some(AmbientRequest::with_rays(16)),
+            threads: 1,
+            ..BakeSettings::standard(SunRequest::Day(DayRequest::new(None, None).unwrap()))
+        };
+        let stage = Stage::of_bake(sunbake::bake_scene(&scene, &settings, &Silent).unwrap()).unwrap();
+        assert_eq!(stage.best_ambient(), AmbientModel::Occlusion);
+        let kept = stage.with_ambient(AmbientModel::Occlusion);
+        assert!(kept.pages.iter().any(|page| page.ambient.is_some()));
     }
 }

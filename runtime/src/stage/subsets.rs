@@ -31,10 +31,11 @@ impl Stage {
         self
     }
 
-    /// The best model of ambient light that the maps of every page allow.
+    /// The best model of ambient light that the maps of every page allow. The page of surfaces that were not baked has
+    /// no such map, and does not count.
     pub fn best_ambient(&self) -> AmbientModel {
         let models = self.pages.iter().map(|page| page_variant(page, self.bits, 0.0).ambient);
-        models.min().unwrap_or_default()
+        models.filter(|&model| model != AmbientModel::Hemisphere).min().unwrap_or_default()
     }
 
     /// The same stage with times of 8 bits; 16 bits are rounded.
