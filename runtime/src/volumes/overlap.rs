@@ -27,9 +27,12 @@ struct TrianglesInLightView {
     corners: Vec<[Vec3; 3]>,
     /// Bounding boxes; empty where a triangle casts nothing.
     bounds: Vec<CellBounds>,
+    /// The first triangle of each body, ascending.
+    starts: Vec<usize>,
 }
 
-/// Splits the casting triangles into a few runs, none of which has more than `most` prisms at one spot.
+/// Splits the casting triangles into a few runs, none of which has more than `most` prisms at one spot. A body that has
+/// more than that by itself is split, others are not: what a smooth solid spares is taken from its own count.
 pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
     let casting = facings.iter().filter(|&&facing| facing != 0).count();
     if casting <= most {
@@ -42,7 +45,8 @@ pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Ve
     };
     let (corners, bounds) = (0..facings.len()).into_par_iter().map(seen).unzip();
     let mut found = Vec::new();
-    TrianglesInLightView { view, corners, bounds }.split(0..facings.len(), most, &mut found);
+    let starts = casters.all.iter().map(|caster| caster.triangles.start).collect();
+    TrianglesInLightView { view, corners, bounds, starts }.split(0..facings.len(), most, &mut found);
     found
 }
 
@@ -52,9 +56,18 @@ impl TrianglesInLightView {
         if casting.len() <= most || !self.exceeds(&casting, self.view.space(), most, 0) {
             return found.push(run);
         }
-        let middle = run.start + run.len() / 2;
+        let middle = self.cut(&run);
         self.split(run.start..middle, most, found);
         self.split(middle..run.end, most, found);
+    }
+
+    /// Where to split a run: between two bodies, near its middle.
+    fn cut(&self, run: &Range<usize>) -> usize {
+        let middle = run.start + run.len() / 2;
+        let next = self.starts.partition_point(|&start| start < middle);
+        let around = next.saturating_sub(1)..self.starts.len().min(next + 1);
+        let inside = self.starts[around].iter().copied().filter(|&start| run.start < start && start < run.end);
+        inside.min_by_key(|start| start.abs_diff(middle)).unwrap_or(middle)
     }
 
     /// Where to split a cell: at the median of the middles of the triangles' parts in it, estimated from a sample.

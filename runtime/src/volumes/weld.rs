@@ -1,11 +1,15 @@
 //! Welding: corners with equal coordinates become one point, whatever mesh, primitive or texture seam they come from.
 //! Triangles that share two points share an edge.
 //!
-//! Coordinates are compared bit for bit. A tolerance would move corners, and then a shadow volume would not start
-//! exactly at the surface that is drawn.
+//! Corners are equal if rounding parts them at most: a sphere whose seam ends at the sine of a whole turn, which is not
+//! quite 0, is closed. Coordinates count in steps of the precision that the largest of them has in `f32`. More would
+//! move corners by more than volumes are biased, and then they would not start at the surface that is drawn.
 
 use glam::Vec3;
 use rayon::prelude::*;
+
+/// Step of coordinates that are told apart, as a share of the largest: half of what `f32` resolves there.
+const STEP: f64 = 1.0 / (1 << 24) as f64;
 
 /// Triangles over shared points, with their edges.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -90,10 +94,11 @@ impl Welded {
 }
 
 fn weld(corners_m: &[[Vec3; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    // Adding zero turns -0.0 into 0.0.
-    let key = |corner: &Vec3| (*corner + 0.0).to_array().map(f32::to_bits);
     let flat = corners_m.as_flattened();
-    let mut sorted: Vec<([u32; 3], u32)> = flat.par_iter().enumerate().map(|(i, c)| (key(c), i as u32)).collect();
+    let largest_m = flat.par_iter().map(|corner| corner.abs().max_element()).reduce(|| 0.0, f32::max);
+    let steps_per_m = 1.0 / (f64::from(largest_m) * STEP).max(f64::MIN_POSITIVE);
+    let key = |corner: &Vec3| corner.to_array().map(|x| (f64::from(x) * steps_per_m).round() as i32);
+    let mut sorted: Vec<([i32; 3], u32)> = flat.par_iter().enumerate().map(|(i, c)| (key(c), i as u32)).collect();
     sorted.par_sort_unstable();
     let mut points_m = Vec::new();
     let mut triangles = vec![[0; 3]; corners_m.len()];
@@ -127,6 +132,13 @@ mod tests {
         let [a, b, c] = [Vec3::ZERO, Vec3::X, Vec3::Y];
         let welded = Welded::new(&[[a, b, c], [Vec3::splat(-0.0), c, b]]);
         assert_eq!((welded.points_m.len(), welded.edges.len()), (3, 3));
+    }
+
+    #[test]
+    fn corners_that_rounding_parts_are_one_and_those_a_step_apart_are_not() {
+        let [a, b, c] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let points = |z: f32| Welded::new(&[[a, b, c], [a.with_z(z), c, b.with_z(-z)]]).points_m.len();
+        assert_eq!((points(9.4e-17), points(1e-9), points(1e-7)), (3, 3, 5));
     }
 
     #[test]
