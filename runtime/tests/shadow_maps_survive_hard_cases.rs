@@ -1,4 +1,4 @@
-//! M1 to M9: shadow maps where they are known to break. These tests need a GPU adapter, and fail without one.
+//! M1 to M10: shadow maps where they are known to break. These tests need a GPU adapter, and fail without one.
 
 use glam::{DVec3, Vec2, Vec3};
 use sunbake::scene::Scene;
@@ -368,6 +368,27 @@ fn m9_a_wall_that_the_sun_grazes_has_no_stripes() {
                 }
             }
             assert!(lit > 500 && shaded > 20, "{lit} {shaded}");
+        }
+    }
+}
+
+#[test]
+fn m10_a_low_sun_leaves_shadows_dark_beside_what_casts_them() {
+    let gpu = gpu();
+    // Something far towards the sun makes what may cast penumbras far away, and the search for it wide.
+    let (rise, east) = 5f64.to_radians().sin_cos();
+    let far = block(Vec3::new(150.0, 0.0, -0.5), Vec3::new(151.0, 4.0, 0.5));
+    let scene = ground().block(Vec3::new(-0.5, 0.0, -0.5), Vec3::new(0.5, 2.0, 0.5)).soup(&far).build();
+    let stage = under_sun(scene, DVec3::new(east, rise, 0.0));
+    let moment = stage.moment(0.5);
+    let shot = Shot::new(&stage, view(&stage, DVec3::new(-3.0, 2.5, 3.0), DVec3::new(-1.5, 0.0, 0.0), SIZE));
+    for variant in UNTUNED.into_iter().filter(|&variant| variant != Variant::Ground) {
+        let seen = seen(&gpu, &shot, &moment, sized(variant, 2048));
+        let beside = |place: &DVec3| place.y.abs() < 1e-3 && place.z.abs() < 0.35 && (-3.0..-0.6).contains(&place.x);
+        let shaded: Vec<_> = surface_points(&shot).into_iter().filter(|(_, place)| beside(place)).collect();
+        assert!(shaded.len() > 300, "{}", shaded.len());
+        for (i, place) in shaded {
+            assert!(seen[i] <= 0.01, "{variant}: {} at {place}", seen[i]);
         }
     }
 }

@@ -6,6 +6,8 @@
 // gradient noise (Jimenez, "Next generation post processing in Call of Duty", SIGGRAPH 2014).
 
 const BLOCKER_TAPS: u32 = 24u;
+// Of these so many look at the nearest texels: beside a wide search, what stands right before the receiver is small.
+const NEAR_TAPS: u32 = 6u;
 const FILTER_TAPS: u32 = 32u;
 const GOLDEN_ANGLE_RAD: f32 = 2.3999632;
 // Narrower than this a filter is the sampler's own.
@@ -31,7 +33,11 @@ fn blocker_distance_m(at: Receiver, slope: f32, metres_per_depth: f32, turn_rad:
     var sum_m = 0.0;
     var count = 0.0;
     for (var i = 0u; i < BLOCKER_TAPS; i++) {
-        let offset_m = off_surface(at, on_spiral(i, BLOCKER_TAPS, turn_rad)) * reach_m;
+        var place = on_spiral(i, NEAR_TAPS, turn_rad) * 1.5 * texel_m;
+        if i >= NEAR_TAPS {
+            place = on_spiral(i - NEAR_TAPS, BLOCKER_TAPS - NEAR_TAPS, turn_rad) * reach_m;
+        }
+        let offset_m = off_surface(at, place);
         let texel = clamp(floor((at.uv + offset_m / at.metres_per_uv) * size), vec2<f32>(0.0), vec2<f32>(size - 1.0));
         let stored = textureLoad(shadow_depths, vec2<i32>(texel), at.map, 0);
         let in_front_m = (depth_at(at, (texel + 0.5) / size) - stored) * metres_per_depth;
