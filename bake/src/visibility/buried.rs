@@ -10,7 +10,7 @@
 //! * Those that are hardly ever lit, by rays over the hemisphere: all of them meet the backs of single-sided surfaces,
 //!   or, within the size of a texel, backs of double-sided ones. (At a distance the backs of double-sided surfaces are
 //!   walls of a room.)
-//! * All, by one ray: straight above them, within a tenth of a texel, lies something. So the sun that grazes comes in
+//! * All, by one ray: straight above them, within a quarter of a texel, lies something. So the sun that grazes comes in
 //!   under the border of a decal, yet a filter sees none of it.
 
 use crate::ambient::{back_comes_first, hemisphere_directions};
@@ -27,7 +27,7 @@ const RAYS: u32 = 16;
 /// Share of the path below which a texel may be buried.
 const DARK: f64 = 0.05;
 /// Height below which what is above a texel lies on it, in texels.
-const ON_TEXELS: f64 = 0.1;
+const ON_TEXELS: f64 = 0.25;
 
 /// Finds buried points.
 pub(crate) struct BuriedPoints<'a> {
