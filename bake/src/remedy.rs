@@ -43,6 +43,8 @@ pub enum Setting {
     NoReceive,
     /// Texels a metre of an object.
     ObjectDensity,
+    /// Texels a metre of an object and of what its shadow falls on.
+    ObjectDensityAround,
     /// Where on Earth the scene lies.
     Place,
     /// The date of the sun's day.

@@ -15,7 +15,7 @@ struct Mistake {
     words: &'static [&'static str],
 }
 
-const MISTAKES: [Mistake; 20] = [
+const MISTAKES: [Mistake; 21] = [
     Mistake {
         name: "an unknown command",
         arguments: ["frobnicate", "frobnicate"],
@@ -44,7 +44,7 @@ const MISTAKES: [Mistake; 20] = [
         name: "more threads than are of use",
         arguments: ["bake scene.glb -o out --threads 1000000", "compare scene.glb -o out --threads 1000000"],
         code: 5,
-        words: &["cannot start 1000000 threads: 1024 are the most", "lower --threads"],
+        words: &["cannot start 1000000 threads: 1024 are the most", "give a smaller --threads"],
     },
     Mistake {
         name: "a day that does not exist",
@@ -60,6 +60,12 @@ const MISTAKES: [Mistake; 20] = [
         ],
         code: 1,
         words: &["latitude 95 is off the globe", "give degrees north"],
+    },
+    Mistake {
+        name: "everything left out",
+        arguments: ["bake scene.glb -o out --leave-out *", "compare scene.glb -o out --leave-out *"],
+        code: 1,
+        words: &["nothing is left of the scene once \"*\" is left out", "leave out less"],
     },
     Mistake {
         name: "an unknown material",

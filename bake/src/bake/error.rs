@@ -6,7 +6,7 @@ use crate::disk::write::WriteError;
 use crate::glb::GlbTooLarge;
 use crate::lamp::{LampError, LampFileError};
 use crate::remedy::Setting;
-use crate::scene::{LoadError, ObjectError, Scene};
+use crate::scene::{LoadError, ObjectError, Role, Scene};
 use crate::settings::EngineChoice;
 use crate::sun::{DayError, KeyedError, LightError};
 
@@ -87,9 +87,10 @@ impl BakeError {
                     "the density asked for (about {texels} texels, {of_instance} of them for {})",
                     scene.meshes[scene.instances[instance].mesh].label()
                 ),
-                smaller: match scene.instances[instance].role.texels_per_metre {
-                    Some(_) => vec![Setting::ObjectDensity],
-                    None => vec![Setting::TexelsPerMetre],
+                smaller: match &scene.instances[instance].role {
+                    Role { texels_per_metre: Some(_), .. } => vec![Setting::ObjectDensity],
+                    Role { texels_per_metre_around: Some(_), .. } => vec![Setting::ObjectDensityAround],
+                    _ => vec![Setting::TexelsPerMetre],
                 },
                 needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
                 allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,

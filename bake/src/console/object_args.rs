@@ -12,7 +12,8 @@ pub struct ObjectArgs {
     /// For outline hulls, sky domes, collision shells. NAME may hold `*` for any text; what has no name is material:3,
     /// node:12 or mesh:0, by its index in the file (`sunbake inspect SCENE` lists them). A node takes all below it. The
     /// same can stand in the file, as extras (custom properties) of a node, mesh or material: sunbake_leave_out,
-    /// sunbake_no_cast and sunbake_no_receive, true or false, and sunbake_density, a number. Options come before them.
+    /// sunbake_no_cast and sunbake_no_receive, true or false, and sunbake_density and sunbake_density_around, numbers.
+    /// Options come before them.
     #[arg(long, value_name = "NAME")]
     pub leave_out: Vec<String>,
     /// Let a material, node or mesh cast no shadow: it is drawn and baked, and light passes it. As --leave-out.

@@ -18,6 +18,7 @@ fn option_of_sunbake(setting: Setting) -> Option<&'static str> {
     Some(match setting {
         Setting::TexelsPerMetre => "--texels-per-metre",
         Setting::ObjectDensity => "--density",
+        Setting::ObjectDensityAround => "--density-around",
         Setting::Padding => "--padding",
         Setting::Bits => "--bits",
         Setting::Layers => "--layers",

@@ -6,10 +6,11 @@
 //!
 //! **The sharp filter.** Where a shadow's edge passes between two texels, it passes them at different times, and the
 //! time at which it passes a point between them is close to the blend of those two. So the signed distance in time from
-//! the nearest edge is blended (as signed distances in space are for glyphs: Green, "Improved alpha-tested magnification
-//! for vector textures and special effects", SIGGRAPH 2007) and evaluated at the point. What the blend of visibilities
-//! knows beyond the nearest edge is kept: `blend(soft) + ramp(blend(d)) - blend(ramp(d))`, with `ramp(d) = d + 1/2`
-//! between 0 and 1. At a texel's centre that is `soft`; it is continuous in time and across texels.
+//! the nearest edge is blended and evaluated at the point, as signed distances in space are for glyphs (Green,
+//! "Improved alpha-tested magnification for vector textures and special effects", SIGGRAPH 2007). What the blend of
+//! visibilities knows beyond the nearest edge is kept: `blend(soft) + ramp(blend(d)) - blend(ramp(d))`, with
+//! `ramp(d) = d + 1/2` between 0 and 1. At a texel's centre that is `soft`; it is continuous in time and across texels.
+//! Distances are counted from the deepest shade, so that where walls leave no texel to blend, nothing is lit.
 
 use super::{Bits, LayerMaps};
 use glam::Vec3;
@@ -58,8 +59,8 @@ fn ramp(distance: f32) -> f32 {
 }
 
 /// What the sharp filter blends of a texel: visibility as of [`soft_visibility`], the signed distance in time from the
-/// nearest edge in widths of the light (positive in light), and the visibility that this distance alone would mean. The
-/// path's ends are no edges.
+/// nearest edge in widths of the light (more in light), counted from the deepest shade, and the visibility that this
+/// distance alone would mean. The path's ends are no edges.
 pub fn edge_sample(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, width_t: f32) -> Vec3 {
     let max_code = f32::from(bits.max_code());
     let width_codes = (width_t * max_code).max(1.0);
@@ -80,12 +81,12 @@ pub fn edge_sample(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, width
         }
     }
     let distance_widths = distance.min(reach) / width_codes;
-    Vec3::new((lit_codes / width_codes).min(1.0), distance_widths, ramp(distance_widths))
+    Vec3::new((lit_codes / width_codes).min(1.0), distance_widths + SHARP_REACH, ramp(distance_widths))
 }
 
 /// Visibility from blended samples of texels.
 pub fn sharpened(blended: Vec3) -> f32 {
-    (blended.x + ramp(blended.y) - blended.z).clamp(0.0, 1.0)
+    (blended.x + ramp(blended.y - SHARP_REACH) - blended.z).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]

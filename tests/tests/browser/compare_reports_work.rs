@@ -15,8 +15,8 @@ fn a_report_holds_every_technique_and_works_in_a_browser() {
     let report = report_in(&folder);
     assert_valid(&report);
     let techniques = report["techniques"].as_array().unwrap();
-    // Two counts of lanes, two depths, two filters; volumes; ten maps; truth of the sun's centre.
-    assert_eq!(techniques.len(), 8 + 1 + 10 + 1, "{}", report["left_out"]);
+    // Two counts of lanes, two depths, three filters; volumes; ten maps; truth of the sun's centre.
+    assert_eq!(techniques.len(), 12 + 1 + 10 + 1, "{}", report["left_out"]);
     assert_eq!(report["left_out"], Value::Array(Vec::new()));
     let frames = report["cameras"].as_array().unwrap().len() * report["times"].as_array().unwrap().len();
     assert_eq!(frames, 15);

@@ -1,6 +1,6 @@
 // What the sharp filter blends of a texel: the share of the light that it sees, its signed distance in time from the
-// nearest edge in widths of the light, and the share that this distance alone would mean. Twin of
-// bake/src/maps/evaluate.rs, where it is explained: same names, same order.
+// nearest edge in widths of the light, counted from the deepest shade, and the share that this distance alone would
+// mean. Twin of bake/src/maps/evaluate.rs, where it is explained: same names, same order.
 
 const SHARP_REACH: f32 = 16.0;
 
@@ -34,9 +34,9 @@ fn edge_sample(
         distance = max(distance, max(max(inside.x, inside.y), max(inside.z, inside.w)));
     }
     let distance_widths = min(distance, reach) / width_codes;
-    return vec3<f32>(min(lit_codes / width_codes, 1.0), distance_widths, ramp(distance_widths));
+    return vec3<f32>(min(lit_codes / width_codes, 1.0), distance_widths + SHARP_REACH, ramp(distance_widths));
 }
 
 fn sharpened(blended: vec3<f32>) -> f32 {
-    return clamp(blended.x + ramp(blended.y) - blended.z, 0.0, 1.0);
+    return clamp(blended.x + ramp(blended.y - SHARP_REACH) - blended.z, 0.0, 1.0);
 }
