@@ -56,12 +56,6 @@ pub enum ObjectError {
         /// What there is, as far as fits.
         known: String,
     },
-    /// Everything is left out.
-    #[error("nothing is left of the scene once {} left out; leave out less", all_of(names))]
-    NothingLeft {
-        /// The names that were given.
-        names: Vec<String>,
-    },
     /// All that the name names is left out.
     #[error(
         "{name:?} is left out of the scene, so there is nothing to {}; take one of the two wishes back",
@@ -99,12 +93,6 @@ pub enum ObjectError {
     },
 }
 
-/// Names as a subject with its verb: `"a" and "b" are`.
-fn all_of(names: &[String]) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
-    format!("{} {}", quoted.join(" and "), if names.len() == 1 { "is" } else { "are" })
-}
-
 /// Names that a message lists, of each kind.
 const MOST_NAMES: usize = 12;
 
@@ -121,10 +109,6 @@ impl ObjectWishes {
             let selection = select(scene, Wish::LeaveOut, name)?;
             selection.materials.iter().for_each(|&index| scene.materials[index].alpha = Alpha::Invisible);
             scene.turn_into_air(&selection.instances);
-        }
-        let is_empty = !(0..scene.instances.len()).any(|instance| scene.is_there(instance));
-        if is_empty && !self.leave_out.is_empty() {
-            return Err(ObjectError::NothingLeft { names: self.leave_out.clone() });
         }
         for name in &self.no_cast {
             change(scene, Wish::NoCast, name, |role| role.casts = false)?;
