@@ -170,8 +170,7 @@ fn push_sun(text: &mut String, surface: SurfaceVariant, sun: &ShadowSource) {
                 ShadowFilter::Four => wgsl!("shadow_maps/filter_4"),
                 ShadowFilter::Penumbra => wgsl!("shadow_maps/filter_pcss"),
             });
-            let has_plane = bias.has_plane;
-            text.push_str(if has_plane { wgsl!("shadow_maps/lit_grazed") } else { wgsl!("shadow_maps/lit_plain") });
+            text.push_str(wgsl!("shadow_maps/lit_on_map"));
             text.push_str(match choice {
                 ShadowMapChoice::One => wgsl!("shadow_maps/maps_one"),
                 ShadowMapChoice::First => wgsl!("shadow_maps/maps_first"),

@@ -27,12 +27,12 @@ struct TrianglesInLightView {
     corners: Vec<[Vec3; 3]>,
     /// Bounding boxes; empty where a triangle casts nothing.
     bounds: Vec<CellBounds>,
-    /// The first triangle of each body, ascending.
+    /// The first triangle of each caster, ascending.
     starts: Vec<usize>,
 }
 
-/// Splits the casting triangles into a few runs, none of which has more than `most` prisms at one spot. A body that has
-/// more than that by itself is split, others are not: what a smooth solid spares is taken from its own count.
+/// Splits the casting triangles into a few runs, none of which has more than `most` prisms at one spot. A caster that
+/// has more than that by itself is split, others are not: what a smooth solid spares is taken from its own count.
 pub fn runs(casters: &Casters, facings: &[i8], light: &Light, most: usize) -> Vec<Range<usize>> {
     let casting = facings.iter().filter(|&&facing| facing != 0).count();
     if casting <= most {
@@ -61,7 +61,7 @@ impl TrianglesInLightView {
         self.split(middle..run.end, most, found);
     }
 
-    /// Where to split a run: between two bodies, near its middle.
+    /// Where to split a run: between two casters, near its middle.
     fn cut(&self, run: &Range<usize>) -> usize {
         let middle = run.start + run.len() / 2;
         let next = self.starts.partition_point(|&start| start < middle);
@@ -208,7 +208,7 @@ mod tests {
     use super::*;
     use crate::stage::Stage;
     use glam::Vec2;
-    use sunbake::testing::{SceneBuilder, floor};
+    use sunbake::testing::{SceneBuilder, block, floor};
 
     const NOON: Light = Light::Sun { towards: DVec3::Y };
 
@@ -226,6 +226,19 @@ mod tests {
         // Along the diagonal of a square both of its triangles count.
         assert_eq!(runs_of(127, 0.0, &NOON), 1);
         assert!(runs_of(256, 0.0, &NOON) > 1);
+    }
+
+    #[test]
+    fn runs_are_cut_between_casters() {
+        let block = |i: usize| block(Vec3::new(0.0, i as f32, 0.0), Vec3::new(1.0, i as f32 + 0.5, 1.0));
+        let triangles: Vec<_> = (0..301).flat_map(block).collect();
+        let stage = Stage::plain(SceneBuilder::new().soup(&triangles).build(), None);
+        let casters = Casters::new(&stage);
+        let runs = runs(&casters, &NOON.facings(&casters, false).of_triangle, &NOON, 500);
+        let starts: Vec<usize> = casters.all.iter().map(|caster| caster.triangles.start).collect();
+        assert!(runs.len() > 1 && starts.len() > 1, "{} runs, {} casters", runs.len(), starts.len());
+        assert!(!starts.contains(&(casters.triangles.len() / 2)), "the middle lies between two of them anyway");
+        assert!(runs.iter().all(|run| starts.contains(&run.start)), "{runs:?}");
     }
 
     #[test]

@@ -62,7 +62,7 @@ fn draws(
 ) -> Vec<FaceDraw> {
     let draw = |part, instances| move |corners| FaceDraw { part, corners, instances };
     let all_of = |parts: &[Part]| plan.ranges(&run.parts, is_z_pass, parts, |_| true).into_iter();
-    // What is spared is taken from the whole count of its run, which has the whole solid.
+    // What is spared is taken from the whole count of its run, which has the whole caster if it can.
     let spared = all_of(&[Part::Spared]).map(draw(Part::Spared, 1));
     if extruded.kind.1 == VolumeCorners::Indexed {
         return all_of(&Part::FACES).map(draw(Part::Walls, 1)).chain(spared).collect();
