@@ -1,7 +1,7 @@
 //! Hard case B6 in filtered playback: no light passes through walls, however thin, at any density and angle. The floor
 //! runs on outside, so that texels inside and outside are neighbours.
 
-use glam::{DVec2, DVec3, Vec3, Vec3Swizzles};
+use glam::{DVec2, DVec3, Vec2, Vec3, Vec3Swizzles};
 use sunbake::atlas::{Density, SurfacePoint};
 use sunbake::progress::Silent;
 use sunbake::scene::{Alpha, LoadLimits, Material, Scene};
@@ -9,9 +9,9 @@ use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
 use sunbake::trace::Direction;
 use sunbake::visibility::{ExactEngine, lit_at};
-use sunbake_runtime::Filter;
 use sunbake_runtime::playback::{AmbientSky, Page};
 use sunbake_runtime::stage::Stage;
+use sunbake_runtime::{Filter, Moment};
 use sunbake_tests::june_day;
 use sunbake_tests::needs::workspace;
 
@@ -188,15 +188,47 @@ fn no_dark_line_runs_round_what_lies_on_the_ground() {
             // South of it, where it casts no shadow at noon.
             let (along, away) = (f64::from(step % 20) / 19.0, 0.01 + f64::from(step / 20) * 0.02);
             let x = f64::from(low.x) * (0.95 - 0.9 * along) + f64::from(high.x) * (0.05 + 0.9 * along);
-            let at = DVec3::new(x, 0.0, f64::from(high.z) + away) - stage.scene.centre_m;
-            let down = Direction::new(-DVec3::Y);
-            let hit = stage.tracer().closest_hit(at + DVec3::Y * 0.5, &down).unwrap();
-            let corners = stage.corners(hit.triangle as usize);
-            let [v, w] = hit.barycentric.map(|weight| weight as f32);
-            let page_uv = corners.page_uv[0] * (1.0 - v - w) + corners.page_uv[1] * v + corners.page_uv[2] * w;
-            least = least.min(page.sun_visibility(page_uv, Vec3::Y, Filter::Bilinear, &noon));
+            least = least.min(seen_on_ground(&stage, &page, &noon, [x, f64::from(high.z) + away]));
         }
         assert!(least > 0.99, "{name}: {least}");
+    }
+}
+
+/// What filtered playback shows of the sun on level ground.
+fn seen_on_ground(stage: &Stage, page: &Page, moment: &Moment, [x, z]: [f64; 2]) -> f32 {
+    let above = DVec3::new(x, 0.5, z) - stage.scene.centre_m;
+    let hit = stage.tracer().closest_hit(above, &Direction::new(-DVec3::Y)).unwrap();
+    let corners = stage.corners(hit.triangle as usize);
+    let [v, w] = hit.barycentric.map(|weight| weight as f32);
+    let page_uv = corners.page_uv[0] * (1.0 - v - w) + corners.page_uv[1] * v + corners.page_uv[2] * w;
+    page.sun_visibility(page_uv, Vec3::Y, Filter::Bilinear, moment)
+}
+
+/// Around the southern corners of boxes at noon, wherever they lie between texels of 25 cm and however they are turned
+/// by a little: nothing is dark from a fifth of a texel away.
+#[test]
+fn no_dark_texel_lies_at_the_foot_of_a_boxs_corner() {
+    let [a, b, c, d] = [[-9.0f32, -9.0], [-9.0, 9.0], [9.0, 9.0], [9.0, -9.0]].map(|[x, z]| Vec3::new(x, 0.0, z));
+    for (place, degrees) in [(0.0f32, 0.0f32), (0.3, 0.0), (0.7, 0.0), (0.1, 4.0), (0.5, -7.0)] {
+        let middle = Vec2::new(place * 0.25, place * 0.17);
+        let half = Vec2::new(1.17, 0.58);
+        let turned = |[x, z]: [f32; 2]| middle + Vec2::from_angle(degrees.to_radians()).rotate(half * Vec2::new(x, z));
+        let stone = block(-half.extend(0.0).xzy(), half.extend(0.9).xzy());
+        let place_of = |p: Vec3| turned((p.xz() / half).to_array()).extend(p.y).xzy();
+        let stone: Vec<[Vec3; 3]> = stone.iter().map(|triangle| triangle.map(place_of)).collect();
+        let scene = SceneBuilder::new().soup(&[[a, b, c], [a, c, d]]).soup(&stone).build();
+        let stage = stage_of(&scene, 4.0, true);
+        let noon = stage.moment(0.5);
+        let page = Page::new(&stage.pages[0], stage.bits, 0.004_7);
+        for side in [-1.0f32, 1.0] {
+            let corner = turned([side, 1.0]).as_dvec2();
+            for step in 0..200 {
+                let (turn, away_m) = (f64::from(step % 10) * 0.1 + 0.35, 0.05 + f64::from(step / 10) * 0.015);
+                let at = corner + away_m * DVec2::new(f64::from(side) * turn.cos(), turn.sin());
+                let seen = seen_on_ground(&stage, &page, &noon, at.to_array());
+                assert!(seen > 0.99, "{place} {degrees}: {seen} {away_m} m from the corner {corner}");
+            }
+        }
     }
 }
 

@@ -7,13 +7,15 @@
 //! Practice: a *wall code* says what stands on the way from a texel's point to its neighbour's: nothing ([`OPEN`]), a
 //! wall at one of [`PLACES`] places, or two surfaces at least a quarter of the way apart (a thick wall, or the corner
 //! of a room), to an eighth of the way. Within the wall the darkest of the four texels counts. A footprint has four
-//! such ways: its edges. Walls are taken to be straight within it; where the baker found them bent, the code of the
-//! upper edge has a mark ([`marked_bent`]).
+//! such ways: its edges. Walls are taken to be straight within it. Where the baker found another shape, a code has a
+//! mark ([`marked`]): the left edge's for the corner of a box or a room, the upper edge's for any other.
 //!
 //! * No edge has a wall: plain weights.
 //! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
 //! * Two edges that meet have one: it cuts off the texel between them. On its side of the wall that texel counts
-//!   alone, on the other side the other three.
+//!   alone, on the other side the other three. Where it turns a corner, all that is certain is that it does so within
+//!   the circle around the two places where it meets the edges (Thales' circle: a right angle lies on it). Within the
+//!   circle the darkest of the four counts, outside the other three.
 //! * One edge has one: the wall ends within the footprint. On that edge one texel counts, on the opposite edge both do,
 //!   and in between they are blended. Between two walls that are well apart it is dark: a corner of a room narrower
 //!   than a texel.
@@ -25,7 +27,7 @@
 /// The code of a way with nothing on it.
 pub const OPEN: u8 = 0xFF;
 
-/// The same with the mark of bent walls.
+/// The same with a mark.
 const OPEN_MARKED: u8 = 0xFE;
 
 /// Codes from here on, up to the open ones, have a mark; without it, they are less by this number.
@@ -68,8 +70,9 @@ fn pairs_before(near: u8) -> u8 {
     (0..near).map(|before| STEPS - APART + 1 - before).sum()
 }
 
-/// A code with the mark that walls are bent within the footprint below and to the right of its way.
-pub fn marked_bent(code: u8) -> u8 {
+/// A code with a mark about the walls within the footprint below and to the right of its way. On the way to the right:
+/// they are bent. On the way down: they turn a corner around the texel that they cut off.
+pub fn marked(code: u8) -> u8 {
     if code == OPEN { OPEN_MARKED } else { code + MARKED }
 }
 
@@ -154,6 +157,7 @@ impl Reach {
         if is_marked(codes[0]) {
             return Self::darkest();
         }
+        let cut_off = if is_marked(codes[2]) { cut_off_by_corner } else { cut_off };
         match [top, bottom, left, right].map(|edge| edge.has_wall) {
             [false, false, false, false] => Self::plain(at),
             [true, true, false, false] => {
@@ -195,18 +199,31 @@ fn at_wall_end(at: [f32; 2], edge: Edge, along: f32, away: f32, ends: [usize; 2]
 /// Where a wall cuts one texel off: `level` and `upright` are the edges that meet in it, and `u`, `v` the point's place
 /// seen from it.
 fn cut_off(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
-    let mut weights = [0.0; 4];
     if u * upright.near + v * level.near < level.near * upright.near {
+        let mut weights = [0.0; 4];
         weights[texel] = 1.0;
-    } else if u * upright.far + v * level.far > level.far * upright.far {
-        weights = Reach::plain(at).weights;
-        weights[texel] = 0.0;
-        let sum: f32 = weights.iter().sum();
-        weights = weights.map(|weight| weight / sum);
-    } else {
+        return Reach::of(weights);
+    }
+    if u * upright.far + v * level.far > level.far * upright.far {
+        return Reach::of(without(at, texel));
+    }
+    Reach::darkest()
+}
+
+/// The same where the wall turns a corner.
+fn cut_off_by_corner(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
+    if u * u + v * v <= u * level.far + v * upright.far {
         return Reach::darkest();
     }
-    Reach::of(weights)
+    Reach::of(without(at, texel))
+}
+
+/// Plain weights of all texels but one.
+fn without(at: [f32; 2], texel: usize) -> [f32; 4] {
+    let mut weights = Reach::plain(at).weights;
+    weights[texel] = 0.0;
+    let sum: f32 = weights.iter().sum();
+    weights.map(|weight| weight / sum)
 }
 
 #[cfg(test)]
@@ -271,8 +288,8 @@ mod tests {
                 let [near, from_second] = [i, j].map(|k| f64::from(k) / 40.0);
                 let code = wall_code(near, from_second);
                 assert!(code < MARKED && !is_open(code), "{near} {from_second}: {code}");
-                let (plain, bent) = (Edge::new(code), Edge::new(marked_bent(code)));
-                assert!(is_marked(marked_bent(code)) && !is_marked(code));
+                let (plain, bent) = (Edge::new(code), Edge::new(marked(code)));
+                assert!(is_marked(marked(code)) && !is_marked(code));
                 assert_eq!((plain.near, plain.far), (bent.near, bent.far), "{near} {from_second}");
                 let (near, far) = (near as f32, 1.0 - from_second as f32);
                 // A quarter itself may be taken either way.
@@ -286,9 +303,61 @@ mod tests {
                 }
             }
         }
-        assert!(is_marked(marked_bent(OPEN)) && is_open(marked_bent(OPEN)) && !is_marked(OPEN) && is_open(OPEN));
-        assert!(Reach::new([0.5, 0.5], [marked_bent(OPEN), OPEN, OPEN, OPEN]).takes_darkest);
-        assert!(!Reach::new([0.5, 0.5], [OPEN, marked_bent(OPEN), OPEN, OPEN]).takes_darkest);
+        assert!(is_marked(marked(OPEN)) && is_open(marked(OPEN)) && !is_marked(OPEN) && is_open(OPEN));
+        assert!(Reach::new([0.5, 0.5], [marked(OPEN), OPEN, OPEN, OPEN]).takes_darkest);
+        for edge in 1..4 {
+            let codes = [0, 1, 2, 3].map(|k| if k == edge { marked(OPEN) } else { OPEN });
+            assert!(!Reach::new([0.5, 0.5], codes).takes_darkest);
+        }
+    }
+
+    /// Corners of a right angle around each of the four texels, turned and moved: no light passes, and what is darkest
+    /// for want of knowledge lies within the circle.
+    #[test]
+    fn no_light_passes_a_corner_and_little_beside_it_is_dark() {
+        let (mut dark, mut footprints) = (0, 0);
+        for degrees in (-80..=80).step_by(5) {
+            let [level, upright] =
+                [0.0, 90.0].map(|more: f64| (f64::from(degrees) / 2.0 + more).to_radians().sin_cos());
+            for (x, y) in (1..10).flat_map(|x| (1..10).map(move |y| (f64::from(x) / 10.0, f64::from(y) / 10.0))) {
+                // Inside is where both of these are below 0.
+                let depths = |u: f64, v: f64| [level, upright].map(|(sin, cos)| (u - x) * cos + (v - y) * sin);
+                let is_inside = |u: f64, v: f64| depths(u, v).iter().all(|depth| *depth < 0.0);
+                if !is_inside(0.0, 0.0) || is_inside(1.0, 0.0) || is_inside(0.0, 1.0) || is_inside(1.0, 1.0) {
+                    continue;
+                }
+                let leaves =
+                    |u: f64, v: f64| (0..=2000).map(|i| f64::from(i) / 2000.0).find(|s| !is_inside(s * u, s * v));
+                let [p, q] = [leaves(1.0, 0.0), leaves(0.0, 1.0)].map(|place| place.unwrap_or(1.0));
+                for texel in 0..4 {
+                    let [flips_x, flips_y] = [texel % 2 == 1, texel / 2 == 1];
+                    let [p, q] = [wall_code_from(p, flips_x), wall_code_from(q, flips_y)];
+                    let upper = if flips_y { [OPEN, p] } else { [p, OPEN] };
+                    let sides = if flips_x { [marked(OPEN), q] } else { [marked(q), OPEN] };
+                    let inside = [0, 1, 2, 3].map(|k| k == texel);
+                    footprints += 1;
+                    for (u, v) in
+                        (0..=20).flat_map(|u| (0..=20).map(move |v| (f64::from(u) / 20.0, f64::from(v) / 20.0)))
+                    {
+                        let flip = |place: f64, flips: bool| if flips { 1.0 - place } else { place };
+                        let at = [flip(u, flips_x) as f32, flip(v, flips_y) as f32];
+                        let reach = Reach::new(at, [upper[0], upper[1], sides[0], sides[1]]);
+                        if is_inside(u, v) {
+                            assert!(inside_only(reach, inside), "{degrees} {x} {y} at {u} {v}: {reach:?}");
+                        } else {
+                            dark += usize::from(reach.takes_darkest);
+                        }
+                    }
+                }
+            }
+        }
+        let mean_texels = dark as f64 / f64::from(footprints * 21 * 21);
+        assert!(mean_texels < 0.08, "{mean_texels} of a texel lies outside the corner and within the circle");
+    }
+
+    fn wall_code_from(place: f64, is_turned: bool) -> u8 {
+        let place = if is_turned { 1.0 - place } else { place };
+        wall_code(place, 1.0 - place)
     }
 
     #[test]

@@ -9,7 +9,7 @@
 //! detail. The surface's own chart is no wall, and neither are surfaces with alpha masks, whose holes let light
 //! through.
 
-use super::reach::{OPEN, marked_bent, wall_code};
+use super::reach::{OPEN, marked, wall_code};
 use super::{Atlas, GutterTexel, PageSamples, PageSize, Sample, SurfacePoint, surface_point};
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, Tracer};
@@ -42,21 +42,49 @@ pub fn find_walls(
     if codes.iter().all(|codes| *codes == [OPEN; 2]) {
         return None;
     }
-    let is_bent = |texel: usize| {
+    let shape = |texel: usize| {
         let [right, lower] = [texel + 1, texel + width];
         if texel % width + 1 == width || lower + 1 >= codes.len() {
-            return false;
+            return WallShape::Straight;
         }
         let edges = [codes[texel][0], codes[lower][0], codes[texel][1], codes[right][1]];
         if edges == [OPEN; 4] {
-            return false;
+            return WallShape::Straight;
         }
         let corners = [texel, right, lower, lower + 1].map(|corner| samples.samples.get(sources[corner] as usize));
-        finder.is_bent(corners, edges)
+        finder.shape(corners, edges)
     };
-    let bent: Vec<usize> = (0..codes.len()).into_par_iter().filter(|&texel| is_bent(texel)).collect();
-    bent.into_iter().for_each(|texel| codes[texel][0] = marked_bent(codes[texel][0]));
+    let of_texel = |texel: usize| (texel, shape(texel));
+    let shapes: Vec<(usize, WallShape)> =
+        (0..codes.len()).into_par_iter().map(of_texel).filter(|(_, shape)| *shape != WallShape::Straight).collect();
+    for (texel, shape) in shapes {
+        let [level, upright] = codes[texel];
+        codes[texel] = shape.marked([level, upright]);
+    }
     Some(codes)
+}
+
+/// The shape of the walls within a footprint, best first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum WallShape {
+    /// As straight as filters take it to be.
+    Straight,
+    /// It cuts one texel off, and turns within the circle around the two places where it meets the edges: the corner of
+    /// a box, or of a room.
+    Corner,
+    /// Any other.
+    Bent,
+}
+
+impl WallShape {
+    /// The codes of a footprint's upper and left edge, with the mark of this shape.
+    fn marked(self, [upper, left]: [u8; 2]) -> [u8; 2] {
+        match self {
+            Self::Straight => [upper, left],
+            Self::Corner => [upper, marked(left)],
+            Self::Bent => [marked(upper), left],
+        }
+    }
 }
 
 const NO_SAMPLE: u32 = u32::MAX;
@@ -132,16 +160,16 @@ impl<'a> WallFinder<'a> {
         sides.iter().filter_map(|side| self.wall(&points, *side, chart)).min().unwrap_or(OPEN)
     }
 
-    /// The codes of a footprint's upper, lower, left and right edge, with the mark of bent walls. Of the four texels,
-    /// some may not be there.
+    /// The codes of a footprint's upper, lower, left and right edge, with the mark of the walls' shape. Of the four
+    /// texels, some may not be there.
     pub fn codes(&self, corners: [Option<&Sample>; 4]) -> [u8; 4] {
         let code = |a: usize, b: usize| match (corners[a], corners[b]) {
             (Some(a), Some(b)) if a != b => self.code(a, b),
             _ => OPEN,
         };
         let mut codes = [code(0, 1), code(2, 3), code(0, 2), code(1, 3)];
-        if codes != [OPEN; 4] && self.is_bent(corners, codes) {
-            codes[0] = marked_bent(codes[0]);
+        if codes != [OPEN; 4] {
+            [codes[0], codes[2]] = self.shape(corners, codes).marked([codes[0], codes[2]]);
         }
         codes
     }
@@ -164,71 +192,78 @@ impl<'a> WallFinder<'a> {
         Some(wall_code(near, far))
     }
 
-    /// Whether the walls within a footprint are other than straight, as far as a filter takes them for straight: where
-    /// two edges have one. Ways across the wall must meet it where a straight one would stand.
-    fn is_bent(&self, corners: [Option<&Sample>; 4], codes: [u8; 4]) -> bool {
+    /// The shape of the walls within a footprint, where two edges have one. Ways across the wall must meet it where a
+    /// straight one would stand, or within the circle of a corner.
+    fn shape(&self, corners: [Option<&Sample>; 4], codes: [u8; 4]) -> WallShape {
         let has_wall = codes.map(|code| code != OPEN);
         if has_wall.iter().filter(|has_wall| **has_wall).count() != 2 {
-            return false;
+            return WallShape::Straight;
         }
-        let [Some(a), Some(b), Some(c), Some(d)] = corners else { return true };
+        let [Some(a), Some(b), Some(c), Some(d)] = corners else { return WallShape::Bent };
         let chart = self.chart(a.triangle);
         let points = [a, b, c, d].map(|sample| surface_point(self.scene, self.geometry, sample));
         let sides: &[f64] = if points[0].is_double_sided { &[1.0, -1.0] } else { &[1.0] };
-        let bent = |side: f64| {
-            let places = points.map(|p| self.tracer.lift(p.position_m, p.normal * side, p.triangle));
-            let differences = self.crossings(places, has_wall, chart);
-            differences.is_none_or(|[least, most]| most.max(-least) > MOST_BENT)
+        let shape = |side: &f64| {
+            let places = points.map(|p| self.tracer.lift(p.position_m, p.normal * *side, p.triangle));
+            self.shape_between(places, has_wall, chart).unwrap_or(WallShape::Bent)
         };
-        !sides.iter().any(|side| !bent(*side))
+        sides.iter().map(shape).min().unwrap_or(WallShape::Bent)
     }
 
-    /// Ways across a wall that two edges have, from edge to edge: the least and the largest difference, as shares of
-    /// the way, between where the wall stands and where a straight one would. `None` where a way meets no wall.
-    fn crossings(&self, [a, b, c, d]: [DVec3; 4], has_wall: [bool; 4], chart: (usize, u32)) -> Option<[f64; 2]> {
-        // The ends of ways whose first one meets the wall on one edge, and whose last one on the other.
-        let across = |starts: [DVec3; 2], ends: [DVec3; 2]| {
-            let way = |share: f64| [starts[0].lerp(starts[1], share), ends[0].lerp(ends[1], share)];
-            let near = |share: f64| self.between(way(share), chart);
-            let [first, last] = [near(0.0)?, near(1.0)?];
-            let mut range = [0.0f64; 2];
-            for step in 1..WAYS {
-                let share = f64::from(step) / f64::from(WAYS);
-                let met = near(share)?;
-                for end in 0..2 {
-                    let difference = met[end] - (first[end] + (last[end] - first[end]) * share);
-                    range = [range[0].min(difference), range[1].max(difference)];
-                }
-            }
-            Some(range)
-        };
+    /// The shape of the wall that two edges have. `None` where a way meets no wall.
+    fn shape_between(&self, [a, b, c, d]: [DVec3; 4], has_wall: [bool; 4], chart: (usize, u32)) -> Option<WallShape> {
         match has_wall {
-            [true, true, ..] => across([a, c], [b, d]),
-            [.., true, true] => across([a, b], [c, d]),
-            [true, _, true, _] => self.fan(a, [b, d, c], chart),
-            [true, ..] => self.fan(b, [a, c, d], chart),
-            [_, true, true, _] => self.fan(c, [d, b, a], chart),
-            _ => self.fan(d, [c, a, b], chart),
+            [true, true, ..] => self.shape_across([a, c], [b, d], chart),
+            [.., true, true] => self.shape_across([a, b], [c, d], chart),
+            [true, _, true, _] => self.shape_around(a, [b, d, c], chart),
+            [true, ..] => self.shape_around(b, [a, c, d], chart),
+            [_, true, true, _] => self.shape_around(c, [d, b, a], chart),
+            _ => self.shape_around(d, [c, a, b], chart),
         }
     }
 
-    /// The same for ways from the texel that a wall cuts off to points on the two other edges, which run from one of
-    /// `ends` to the next.
-    fn fan(&self, from: DVec3, ends: [DVec3; 3], chart: (usize, u32)) -> Option<[f64; 2]> {
-        let near = |to: DVec3| self.between([from, to], chart);
-        let [level, upright] = [near(ends[0])?[0], near(ends[2])?[0]].map(|share| share.max(1e-9));
-        let mut range = [0.0f64; 2];
+    /// Of a wall between two edges, on ways from one to the other: the first way meets it on one edge of the footprint,
+    /// the last on the opposite one.
+    fn shape_across(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<WallShape> {
+        let way = |share: f64| [starts[0].lerp(starts[1], share), ends[0].lerp(ends[1], share)];
+        let met_at = |share: f64| self.between(way(share), chart);
+        let [first, last] = [met_at(0.0)?, met_at(1.0)?];
+        let mut most = 0.0f64;
+        for step in 1..WAYS {
+            let share = f64::from(step) / f64::from(WAYS);
+            let met = met_at(share)?;
+            for end in 0..2 {
+                most = most.max((met[end] - (first[end] + (last[end] - first[end]) * share)).abs());
+            }
+        }
+        Some(if most > MOST_BENT { WallShape::Bent } else { WallShape::Straight })
+    }
+
+    /// Of a wall around a texel that it cuts off, on ways from there to points on the two edges that do not meet there:
+    /// they run from one of `ends` to the next.
+    fn shape_around(&self, from: DVec3, ends: [DVec3; 3], chart: (usize, u32)) -> Option<WallShape> {
+        // Shares of the ways to the first surface, and to the last.
+        let met = |to: DVec3| self.between([from, to], chart).map(|[near, rest]| [near, 1.0 - rest]);
+        let [level, upright] = [met(ends[0])?, met(ends[2])?];
+        let near = [level[0].max(1e-9), upright[0].max(1e-9)];
+        let (mut off_line, mut out_of_circle) = (0.0f64, 0.0f64);
         for step in 1..2 * WAYS {
             let share = f64::from(step) / f64::from(WAYS);
-            let (to, place) = match share <= 1.0 {
+            let (to, [u, v]) = match share <= 1.0 {
                 true => (ends[0].lerp(ends[1], share), [1.0, share]),
                 false => (ends[1].lerp(ends[2], share - 1.0), [2.0 - share, 1.0]),
             };
-            let straight = 1.0 / (place[0] / level + place[1] / upright);
-            let difference = near(to)?[0] - straight;
-            range = [range[0].min(difference), range[1].max(difference)];
+            let [first, last] = met(to)?;
+            off_line = off_line.max((first - 1.0 / (u / near[0] + v / near[1])).abs());
+            // The circle passes through the texel: where the way leaves it again.
+            let circle = (level[1] * u + upright[1] * v) / (u * u + v * v);
+            out_of_circle = out_of_circle.max(last - circle);
         }
-        Some(range)
+        Some(match (off_line > MOST_BENT, out_of_circle > MOST_BENT) {
+            (false, _) => WallShape::Straight,
+            (true, false) => WallShape::Corner,
+            (true, true) => WallShape::Bent,
+        })
     }
 
     /// How far it is to the ceiling above a point. From inside a solid, its top is none.

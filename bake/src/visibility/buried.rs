@@ -114,13 +114,19 @@ pub(crate) fn fill_buried(
         let point = atlas::surface_point(buried.scene, buried.geometry, &samples[order[place] as usize]);
         buried.is_buried(&point, answers.lit_share(place))
     };
-    let fill = |place: usize| {
-        let neighbours = neighbours(place);
+    let has_brighter_neighbour = |place: usize| {
         let own_share = answers.lit_share(place).max(DARK);
-        if neighbours.iter().all(|&other| answers.lit_share(other) <= own_share) || !is_buried(place) {
+        neighbours(place).iter().any(|&other| answers.lit_share(other) > own_share)
+    };
+    // Rays are sent once for each of these; their other neighbours are few.
+    let tested = |place: usize| has_brighter_neighbour(place).then(|| is_buried(place));
+    let known: Vec<Option<bool>> = (0..order.len()).into_par_iter().map(tested).collect();
+    let fill = |place: usize| {
+        if known[place] != Some(true) {
             return None;
         }
-        let visible: Vec<usize> = neighbours.into_iter().filter(|&other| !is_buried(other)).collect();
+        let is_visible = |other: &usize| !known[*other].unwrap_or_else(|| is_buried(*other));
+        let visible: Vec<usize> = neighbours(place).into_iter().filter(is_visible).collect();
         if visible.is_empty() {
             return None;
         }

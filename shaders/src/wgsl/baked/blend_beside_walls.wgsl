@@ -85,17 +85,31 @@ fn at_wall_end(
     return Reach(others + (1.0 - away) * (side.x * first + side.y * second), false);
 }
 
-// Where a wall cuts the marked texel off: `level` and `upright` are the edges that meet in it, and `place` is the
-// point's, seen from it.
-fn cut_off(at: vec2<f32>, texel: vec4<f32>, level: Edge, upright: Edge, place: vec2<f32>) -> Reach {
-    if place.x * upright.near + place.y * level.near < level.near * upright.near {
+// Where a wall cuts the marked texel off, straight or with a corner: `level` and `upright` are the edges that meet in
+// it, and `place` is the point's, seen from it.
+fn cut_off(
+    at: vec2<f32>,
+    is_corner: bool,
+    texel: vec4<f32>,
+    level: Edge,
+    upright: Edge,
+    place: vec2<f32>,
+) -> Reach {
+    if !is_corner && place.x * upright.near + place.y * level.near < level.near * upright.near {
         return Reach(texel, false);
     }
-    if place.x * upright.far + place.y * level.far > level.far * upright.far {
-        let others = plain(at) * (1.0 - texel);
-        return Reach(others / dot(others, vec4<f32>(1.0)), false);
+    let is_beyond_line = place.x * upright.far + place.y * level.far > level.far * upright.far;
+    let is_beyond_circle = dot(place, place) > dot(place, vec2<f32>(level.far, upright.far));
+    if select(is_beyond_line, is_beyond_circle, is_corner) {
+        return Reach(without(at, texel), false);
     }
     return Reach(vec4<f32>(0.0), true);
+}
+
+// Plain weights of all texels but one.
+fn without(at: vec2<f32>, texel: vec4<f32>) -> vec4<f32> {
+    let others = plain(at) * (1.0 - texel);
+    return others / dot(others, vec4<f32>(1.0));
 }
 
 fn reach(footprint: Footprint) -> Reach {
@@ -123,6 +137,7 @@ fn reach(footprint: Footprint) -> Reach {
     if count == 0.0 {
         return Reach(plain(at), false);
     }
+    let is_corner = is_marked(first.y);
     if walls.x && walls.y {
         let side = sides(between(top, bottom, at.y), at.x);
         return Reach(vec4<f32>(side * back.y, side * at.y), side.x + side.y == 0.0);
@@ -133,16 +148,16 @@ fn reach(footprint: Footprint) -> Reach {
         return Reach(vec4<f32>(side.x * level, side.y * level), side.x + side.y == 0.0);
     }
     if walls.x && walls.z {
-        return cut_off(at, upper_left, top, left, at);
+        return cut_off(at, is_corner, upper_left, top, left, at);
     }
     if walls.x && walls.w {
-        return cut_off(at, upper_right, turned(top), right, vec2<f32>(back.x, at.y));
+        return cut_off(at, is_corner, upper_right, turned(top), right, vec2<f32>(back.x, at.y));
     }
     if walls.y && walls.z {
-        return cut_off(at, lower_left, bottom, turned(left), vec2<f32>(at.x, back.y));
+        return cut_off(at, is_corner, lower_left, bottom, turned(left), vec2<f32>(at.x, back.y));
     }
     if walls.y && walls.w {
-        return cut_off(at, lower_right, turned(bottom), turned(right), back);
+        return cut_off(at, is_corner, lower_right, turned(bottom), turned(right), back);
     }
     if walls.x {
         return at_wall_end(at, top, at.x, at.y, upper_left, upper_right);
