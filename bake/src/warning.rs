@@ -3,6 +3,7 @@
 use crate::remedy::{Remedy, Setting};
 use crate::scene::{SceneWarning, first_of};
 use crate::sun::Date;
+use crate::words::{counted, either};
 
 /// A light whose visibility is baked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,8 +69,9 @@ pub enum Warning {
     },
     /// Some meshes do not get the density asked for.
     #[error(
-        "{meshes} meshes do not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; \
-         mesh {mesh} gets {reached_per_metre:.3}"
+        "{} not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; mesh {mesh} gets \
+         {reached_per_metre:.3}",
+        if *meshes == 1 { "a mesh does".to_owned() } else { format!("{meshes} meshes do") }
     )]
     LessDensity {
         /// Number of meshes that get a lower density.
@@ -152,9 +154,14 @@ pub enum Warning {
     },
     /// Texels have more intervals than their layers hold.
     #[error(
-        "{texels} texels have more intervals{} than {layer_cap} layers hold: the worst is wrong for {worst_min:.1} \
-         minutes of the day, and {needed_layers} layers would keep them all",
-        if *light == Light::Lamp { " of the lamp" } else { "" }
+        "{} {} more intervals{} than {} {}: the worst is wrong for {worst_min:.1} minutes of the day, and {} would \
+         keep them all",
+        counted(*texels, "texel"),
+        either(*texels, "has", "have"),
+        if *light == Light::Lamp { " of the lamp" } else { "" },
+        counted(*layer_cap as u64, "layer"),
+        either(*layer_cap as u64, "holds", "hold"),
+        counted(*needed_layers, "layer")
     )]
     Merged {
         /// The light whose intervals did not fit.
@@ -169,7 +176,7 @@ pub enum Warning {
         needed_layers: u64,
     },
     /// Rays ran out before the error was small enough.
-    #[error("{texels} texels may still be off by more than {error} after {rays} rays of sky")]
+    #[error("{} may still be off by more than {error} after {rays} rays of sky", counted(*texels, "texel"))]
     AmbientUnconverged {
         /// Number of sides of texels whose error may be larger.
         texels: u64,

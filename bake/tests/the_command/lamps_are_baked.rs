@@ -75,7 +75,7 @@ fn a_plan_says_what_a_lamp_adds() {
     let desk = desk();
     let plan = |more: &[&str]| desk.run(&[&["bake", "floor.glb", "--explain"], more].concat()).ok();
     let with = plan(&["--lamp=lamp.json", "--json"]).json();
-    assert!(effect(&with, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("2 straight segment(s)")));
+    assert!(effect(&with, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("2 straight segments")));
     let without = plan(&["--json"]).json();
     assert!(effect(&without, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("--lamp")));
     assert!(plan(&["--path=lamp.json"]).stdout.contains("3 keys"));
