@@ -170,6 +170,16 @@ impl Explain for LightError {
     }
 }
 
+impl Explain for KeyedError {
+    fn class(&self) -> ErrorClass {
+        match self {
+            // The rest is in the path file.
+            Self::North(_) => ErrorClass::Usage,
+            _ => ErrorClass::BadInput,
+        }
+    }
+}
+
 /// Errors of one class that say themselves what to do.
 macro_rules! explain {
     ($($error:ty => $class:ident),* $(,)?) => {
@@ -186,7 +196,6 @@ explain! {
     DateError => Usage,
     DayError => Usage,
     GlbTooLarge => BadInput,
-    KeyedError => BadInput,
     LampError => BadInput,
     LampFileError => BadInput,
 }

@@ -112,8 +112,11 @@ fn missing_files_are_named() {
         (&["bake", "out", "-o", "out/set"], 2, &["cannot read out", "it is a folder"]),
         (&["bake", "gone.gltf", "-o", "out/set"], 2, &["gone.bin", "put it back"]),
         (&["bake", "floor.glb", "-o", "out/set", "--path", "no.json"], 2, &["no.json", "--path"]),
-        (&["bake", "floor.glb", "-o", "out/set", "--path", "keys.json"], 3, &["path"]),
-        (&["inspect", "nowhere"], 2, &["nowhere", "sunbake bake"]),
+        (&["bake", "floor.glb", "-o", "out/set", "--path", "keys.json"], 3, &["keys.json: ", "line 1 column 1"]),
+        (&["inspect", "nowhere"], 2, &["nowhere is not there", "check its name"]),
+        (&["inspect", "nowhere.glb"], 2, &["nowhere.glb is not there", "check its name"]),
+        (&["inspect", "out"], 2, &["out holds no sunbake.json", "check its name", "sunbake bake"]),
+        (&["texels", "floor.glb"], 2, &["floor.glb is a file", "folder"]),
     ];
     for (arguments, code, words) in cases {
         desk.run(arguments).fails(&arguments.join(" "), code, words);

@@ -72,7 +72,7 @@ fn bad_sizes_and_positions_are_refused_by_name() {
     }
     assert!(matches!(parse_keyed(r#"{"positions": []}"#, 0.0), Err(KeyedError::Positions(_))));
     assert!(matches!(parse_keyed("", 0.0), Err(KeyedError::Keys(KeyError::Json(_)))));
-    assert!(matches!(parse_keyed(&format!("{{{keys}}}"), f64::NAN), Err(KeyedError::Size { .. })));
+    assert!(matches!(parse_keyed(&format!("{{{keys}}}"), f64::NAN), Err(KeyedError::North(_))));
 }
 
 #[test]
