@@ -153,7 +153,7 @@ impl Explain for FolderError {
 impl Explain for ReadError {
     fn class(&self) -> ErrorClass {
         match self {
-            Self::Io { .. } | Self::NotASet { .. } => ErrorClass::Io,
+            Self::Io { .. } | Self::Missing { .. } | Self::File { .. } | Self::NotASet { .. } => ErrorClass::Io,
             Self::Manifest { .. } | Self::Texture { .. } => ErrorClass::BadInput,
         }
     }

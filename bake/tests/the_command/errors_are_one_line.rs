@@ -107,7 +107,7 @@ fn missing_files_are_named() {
     let desk = Desk::new();
     desk.write("gone.gltf", &with_buffer("gone.bin"));
     desk.write("keys.json", b"[");
-    let cases: [(&[&str], i32, &[&str]); 6] = [
+    let cases: [(&[&str], i32, &[&str]); 9] = [
         (&["bake", "nowhere.glb", "-o", "out/set"], 2, &["cannot read nowhere.glb", "check the path"]),
         (&["bake", "out", "-o", "out/set"], 2, &["cannot read out", "it is a folder"]),
         (&["bake", "gone.gltf", "-o", "out/set"], 2, &["gone.bin", "put it back"]),
@@ -178,14 +178,16 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_scene_is_read() {
     let cases: [(&str, &[&str], &[&str]); 6] = [
         ("out/letter.txt/set", &[], &["cannot write in out/letter.txt", "-o"]),
         ("out/letter.txt/a/b", &[], &["cannot write in out/letter.txt/a", "-o"]),
-        ("out/letter.txt", &[], &["out/letter.txt exists", "-o", "--force"]),
+        ("out/letter.txt", &[], &["out/letter.txt exists", "is not a baked set", "another folder with -o"]),
         ("out/letter.txt", &["--force"], &["is not a baked set", "-o"]),
-        ("out", &[], &["out exists", "-o", "--force"]),
+        ("out", &[], &["out exists", "is not a baked set", "another folder with -o"]),
         ("out", &["--force"], &["is not a baked set", "never replaced"]),
     ];
     for (target, options, words) in cases {
         let arguments = [&["bake", "nowhere.glb", "-o", target], options].concat();
-        desk.run(&arguments).fails(target, 2, words);
+        let run = desk.run(&arguments);
+        run.fails(target, 2, words);
+        assert!(!run.stderr.contains("--force"), "it would not help: {}", run.stderr);
         assert_eq!(desk.left(), ["letter.txt"]);
     }
     desk.run(&["bake", "nowhere.glb", "-o", "out/new/deep/set"]).fails("no scene", 2, &["nowhere.glb"]);
