@@ -76,7 +76,11 @@ impl Explain for BakeError {
                 Remedy::Set(Setting::Engine, "exact".into()),
                 Remedy::Set(Setting::Engine, "rays:N".into()),
             ])),
-            Self::Objects(ObjectError::NothingNamed { wish, .. }) => Some(Remedy::Change(setting_of(*wish))),
+            Self::Objects(
+                ObjectError::NothingNamed { wish, .. }
+                | ObjectError::NoIndex { wish, .. }
+                | ObjectError::DrawsNothing { wish, .. },
+            ) => Some(Remedy::any([Remedy::Change(setting_of(*wish)), Remedy::ListNames])),
             Self::Objects(_) => None,
             Self::Memory { smaller, .. } => {
                 let smaller = smaller.iter().map(|&setting| Remedy::Lower(setting));

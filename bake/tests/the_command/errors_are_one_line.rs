@@ -156,7 +156,7 @@ fn invalid_options_are_refused() {
         (&["--density", "node:0=1e7"], 3, &["for meshes[0]", "smaller --density", "larger --max-memory"]),
         (&["--leave-out", "ghost"], 1, &["\"ghost\" to leave out", "another --leave-out"]),
         (&["--no-cast", "ghost"], 1, &["\"ghost\" to free of its shadow", "another --no-cast"]),
-        (&["--no-receive", "node:9"], 1, &["node:9", "another --no-receive"]),
+        (&["--no-receive", "node:9"], 1, &["node:9", "it has 1 node, node:0", "another --no-receive"]),
         (&["--density", "floor"], 1, &["`floor` is no name with a positive number", "NAME=X"]),
         (&["--leave-out", "node:0", "--no-cast", "node:0"], 1, &["is left out", "take one of the two wishes back"]),
         (&["--no-receive", "node:0", "--density", "node:0=4"], 1, &["no texels to give a density"]),
