@@ -76,7 +76,11 @@ impl Explain for BakeError {
                 Remedy::Set(Setting::Engine, "exact".into()),
                 Remedy::Set(Setting::Engine, "rays:N".into()),
             ])),
-            Self::Objects(ObjectError::NothingNamed { wish, .. }) => Some(Remedy::Change(setting_of(*wish))),
+            Self::Objects(
+                ObjectError::NothingNamed { wish, .. }
+                | ObjectError::NoIndex { wish, .. }
+                | ObjectError::DrawsNothing { wish, .. },
+            ) => Some(Remedy::any([Remedy::Change(setting_of(*wish)), Remedy::ListNames])),
             Self::Objects(_) => None,
             Self::Memory { smaller, .. } => {
                 let smaller = smaller.iter().map(|&setting| Remedy::Lower(setting));
@@ -153,7 +157,7 @@ impl Explain for FolderError {
 impl Explain for ReadError {
     fn class(&self) -> ErrorClass {
         match self {
-            Self::Io { .. } | Self::NotASet { .. } => ErrorClass::Io,
+            Self::Io { .. } | Self::Missing { .. } | Self::File { .. } | Self::NotASet { .. } => ErrorClass::Io,
             Self::Manifest { .. } | Self::Texture { .. } => ErrorClass::BadInput,
         }
     }
@@ -167,6 +171,16 @@ impl Explain for LightError {
     fn remedy(&self) -> Option<Remedy> {
         let instead = [Remedy::Set(Setting::Place, "LAT,LON".into()), Remedy::Set(Setting::Path, "FILE".into())];
         matches!(self, Self::Direction(_) | Self::BelowHorizon { .. }).then(|| Remedy::any(instead))
+    }
+}
+
+impl Explain for KeyedError {
+    fn class(&self) -> ErrorClass {
+        match self {
+            // The rest is in the path file.
+            Self::North(_) => ErrorClass::Usage,
+            _ => ErrorClass::BadInput,
+        }
     }
 }
 
@@ -186,7 +200,6 @@ explain! {
     DateError => Usage,
     DayError => Usage,
     GlbTooLarge => BadInput,
-    KeyedError => BadInput,
     LampError => BadInput,
     LampFileError => BadInput,
 }

@@ -86,6 +86,7 @@ pub mod texels;
 pub mod trace;
 pub mod visibility;
 mod warning;
+pub mod words;
 
 pub use bake::{Bake, BakeError, BakeReport, Prepared, bake, bake_scene, prepare, sun_path};
 pub use error::{ErrorClass, Explain};

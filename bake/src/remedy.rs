@@ -90,6 +90,10 @@ pub enum Remedy {
     Set(Setting, String),
     /// Do not give the setting.
     Omit(Setting),
+    /// Give each of these settings its value, together.
+    SetAll(Vec<(Setting, String)>),
+    /// See what the scene has to name.
+    ListNames,
     /// Bake the scene again, with this changed.
     Rebake(Box<Remedy>),
     /// Something that is no setting, as a phrase: `simplify the scene`.

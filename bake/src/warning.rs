@@ -3,6 +3,7 @@
 use crate::remedy::{Remedy, Setting};
 use crate::scene::{SceneWarning, first_of};
 use crate::sun::Date;
+use crate::words::{counted, either};
 
 /// A light whose visibility is baked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,17 +26,32 @@ pub enum Warning {
     NotKept(String),
     /// The sun stays below the horizon all day.
     #[error(
-        "the sun does not rise at latitude {latitude_deg} on {date}: its centre stays at least {:.1} degrees below the \
-         horizon, so there is no sun",
-        -highest_elevation_deg
+        "the sun does not rise at latitude {latitude_deg} on {date}: its centre stays {} the horizon, so there is no \
+         sun",
+        depth_below(*highest_elevation_deg)
     )]
     NoSunrise {
         /// Degrees north.
         latitude_deg: f64,
         /// The day.
         date: Date,
-        /// Highest elevation of the sun's centre, in degrees: below 0.
+        /// Highest elevation of the sun's centre, in degrees: not above 0, up to rounding.
         highest_elevation_deg: f64,
+    },
+    /// North is turned, and the sun does not depend on it.
+    #[error("the scene's own light is the sun, which north turned by {north_deg} degrees does not move")]
+    NorthUnused {
+        /// Degrees that north is turned from -Z towards +X.
+        north_deg: f64,
+    },
+    /// Nothing is left that can be shaded.
+    #[error(
+        "{}, so the set has no texels: there is nothing to bake",
+        if *is_empty { "everything is left out" } else { "nothing takes shadows" }
+    )]
+    NothingToBake {
+        /// Whether everything is left out, and nothing is drawn either.
+        is_empty: bool,
     },
     /// A mesh has too many charts for a page, so charts are closer together than asked.
     #[error(
@@ -68,8 +84,9 @@ pub enum Warning {
     },
     /// Some meshes do not get the density asked for.
     #[error(
-        "{meshes} meshes do not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; \
-         mesh {mesh} gets {reached_per_metre:.3}"
+        "{} not fit a page of {page_size_texels} texels at {asked_per_metre} texels a metre; mesh {mesh} gets \
+         {reached_per_metre:.3}",
+        if *meshes == 1 { "a mesh does".to_owned() } else { format!("{meshes} meshes do") }
     )]
     LessDensity {
         /// Number of meshes that get a lower density.
@@ -105,8 +122,8 @@ pub enum Warning {
     },
     /// An object alone hides the sun from much of the rest.
     #[error(
-        "{} alone hides the sun from {:.0} % of what would see it; if it is a sky dome, an outline, a collision shell \
-         or water, it should cast no shadow",
+        "{} alone hides the sun from {:.0} % of what would see it; if it is an outline or a collision shell, leave it \
+         out; water should cast no shadow, and a sky dome should neither cast nor take any",
         .0.object,
         100.0 * .0.share
     )]
@@ -152,9 +169,14 @@ pub enum Warning {
     },
     /// Texels have more intervals than their layers hold.
     #[error(
-        "{texels} texels have more intervals{} than {layer_cap} layers hold: the worst is wrong for {worst_min:.1} \
-         minutes of the day, and {needed_layers} layers would keep them all",
-        if *light == Light::Lamp { " of the lamp" } else { "" }
+        "{} {} more intervals{} than {} {}: the worst is wrong for {worst_min:.1} minutes of the day, and {} would \
+         keep them all",
+        counted(*texels, "texel"),
+        either(*texels, "has", "have"),
+        if *light == Light::Lamp { " of the lamp" } else { "" },
+        counted(*layer_cap as u64, "layer"),
+        either(*layer_cap as u64, "holds", "hold"),
+        counted(*needed_layers, "layer")
     )]
     Merged {
         /// The light whose intervals did not fit.
@@ -169,7 +191,7 @@ pub enum Warning {
         needed_layers: u64,
     },
     /// Rays ran out before the error was small enough.
-    #[error("{texels} texels may still be off by more than {error} after {rays} rays of sky")]
+    #[error("{} may still be off by more than {error} after {rays} rays of sky", counted(*texels, "texel"))]
     AmbientUnconverged {
         /// Number of sides of texels whose error may be larger.
         texels: u64,
@@ -197,6 +219,14 @@ pub struct Occluder {
     pub name: String,
     /// Share of the light of all else that it alone takes, 0 to 1.
     pub share: f64,
+}
+
+/// How far below the horizon an elevation is, for a sentence: not as `-0.0 degrees`.
+fn depth_below(elevation_deg: f64) -> String {
+    match -elevation_deg {
+        depth_deg @ 0.05.. => format!("at least {depth_deg:.1} degrees below"),
+        _ => "just below".into(),
+    }
 }
 
 /// A value as a shell takes it.
@@ -231,6 +261,11 @@ impl Warning {
             | Self::PaddingReduced { .. }
             | Self::Unwrapped { .. } => None,
             Self::NoSunrise { .. } => Some(Remedy::Change(Setting::Date)),
+            Self::NorthUnused { .. } => Some(Remedy::Set(Setting::Place, "LAT,LON".into())),
+            Self::NothingToBake { is_empty: true } => Some(Remedy::Fewer(Setting::LeaveOut)),
+            Self::NothingToBake { is_empty: false } => {
+                Some(Remedy::AnyOf([Setting::NoReceive, Setting::LeaveOut].map(Remedy::Fewer).into()))
+            }
             Self::PageEnlarged { used_texels, .. } => Some(Remedy::any([
                 Remedy::Set(Setting::PageSize, used_texels.to_string()),
                 Remedy::Do("simplify the mesh"),
@@ -240,10 +275,11 @@ impl Warning {
             }
             Self::Dark { .. } => Some(Remedy::Set(Setting::LeaveOut, "MATERIAL".into())),
             Self::Occluder(Occluder { name, .. }) => {
-                let name = in_quotes(name);
-                Some(Remedy::any(
-                    [Setting::LeaveOut, Setting::NoCast].map(|setting| Remedy::Set(setting, name.clone())),
-                ))
+                let set = |setting| (setting, in_quotes(name));
+                let alone = |setting| Remedy::Set(setting, in_quotes(name));
+                // Not to take shadows does not help alone: it would go on to cast them.
+                let both = Remedy::SetAll([Setting::NoCast, Setting::NoReceive].map(set).into());
+                Some(Remedy::any([alone(Setting::LeaveOut), alone(Setting::NoCast), both]))
             }
             Self::Narrow { objects, texels_per_metre, .. } => {
                 let name = objects.first().map(String::as_str).unwrap_or_default();
@@ -260,5 +296,33 @@ impl Warning {
             }
             Self::FewerPoints { .. } => Some(Remedy::Lower(Setting::PageSize)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sun_that_nearly_rises_is_not_minus_zero_degrees_below() {
+        let below = |highest_elevation_deg| {
+            let date = Date::new(2026, 12, 21).expect("a date");
+            Warning::NoSunrise { latitude_deg: 67.4, date, highest_elevation_deg }.to_string()
+        };
+        for nearly in [-0.04, -0.0, 0.0, 1e-9, 0.02] {
+            assert!(below(nearly).contains("stays just below the horizon"), "{}", below(nearly));
+        }
+        assert!(below(-0.06).contains("stays at least 0.1 degrees below the horizon"), "{}", below(-0.06));
+    }
+
+    #[test]
+    fn what_hides_the_sun_is_told_with_remedies_that_help() {
+        let dome = Occluder { object: "node \"Sky\"".into(), name: "Sky".into(), share: 1.0 };
+        let set = |setting| (setting, "Sky".to_owned());
+        let remedy = Warning::Occluder(dome).remedy();
+        let Some(Remedy::AnyOf(all)) = remedy else { panic!("{remedy:?}") };
+        assert_eq!(all[0], Remedy::Set(Setting::LeaveOut, "Sky".into()));
+        assert_eq!(all[2], Remedy::SetAll(vec![set(Setting::NoCast), set(Setting::NoReceive)]));
+        assert!(!all.contains(&Remedy::Set(Setting::NoReceive, "Sky".into())), "it would go on to cast");
     }
 }

@@ -88,7 +88,7 @@ fn impossible_requests_are_refused_with_advice() {
     std::fs::write(&broken, "no scene").unwrap();
     let nowhere = folder.path().join("nowhere.glb");
     let ours = scene();
-    let cases: [(&Path, &[&str], i32, &str); 13] = [
+    let cases: [(&Path, &[&str], i32, &str); 15] = [
         (&ours, &[], 1, "nothing was baked for it"),
         (&ours, &["--technique", "truth:hard", "--output", "volumes"], 1, "there are no volumes to show"),
         (&ours, &["--technique", "volumes", "--renderer", "cpu"], 1, "counted by a GPU"),
@@ -100,6 +100,8 @@ fn impossible_requests_are_refused_with_advice() {
         (&ours, &["--technique", "volumes", "--lamp-range", "5"], 1, "there is no lamp"),
         (&ours, &["--technique", "volumes", "--ambient", "sh2"], 1, "leave --ambient out"),
         (&ours, &["--technique", "volumes", "--light", "sky", "--output", "volumes"], 1, "no shadow volumes"),
+        (&ours, &["--technique", "map", "--filter", "nearest"], 1, "--filter nearest has no effect"),
+        (&ours, &["--technique", "map", "--output", "visibility", "--ambient", "ao"], 1, "--ambient ao has no effect"),
         (&broken, &["--technique", "volumes"], 3, "broken.glb"),
         (&nowhere, &["--technique", "volumes"], 2, "nowhere.glb"),
     ];

@@ -15,7 +15,7 @@ struct Mistake {
     words: &'static [&'static str],
 }
 
-const MISTAKES: [Mistake; 20] = [
+const MISTAKES: [Mistake; 21] = [
     Mistake {
         name: "an unknown command",
         arguments: ["frobnicate", "frobnicate"],
@@ -83,7 +83,7 @@ const MISTAKES: [Mistake; 20] = [
         name: "a set that is missing",
         arguments: ["inspect nowhere", "frame nowhere -o out.png"],
         code: 2,
-        words: &["nowhere"],
+        words: &["nowhere is not there", "check its name"],
     },
     Mistake {
         name: "a folder that is no set",
@@ -101,7 +101,13 @@ const MISTAKES: [Mistake; 20] = [
         name: "a folder in the way",
         arguments: ["bake scene.glb -o folder", "compare scene.glb -o folder"],
         code: 2,
-        words: &["folder exists", "choose another folder with -o", "replace it with --force"],
+        words: &["folder exists", "never replaced", "choose another folder with -o", "remove it yourself"],
+    },
+    Mistake {
+        name: "a file of that name",
+        arguments: ["bake scene.glb -o letter.txt", "compare scene.glb -o letter.txt"],
+        code: 2,
+        words: &["letter.txt exists", "never replaced", "choose another folder with -o"],
     },
     Mistake {
         name: "a folder that is somebody else's",

@@ -55,12 +55,20 @@ pub(super) fn prepare_scene(mut scene: Scene, settings: &BakeSettings) -> Result
     settings.objects.apply_to(&mut scene)?;
     let mut warnings: Vec<Warning> = scene.warnings.iter().cloned().map(Warning::Scene).collect();
     warnings.extend(clear_warning(&scene));
+    warnings.extend(nothing_warning(&scene));
     let is_lamp_alone = matches!(&settings.sun, SunRequest::Keyed { json, .. } if lamp::is_lamp(json));
     let path = if is_lamp_alone { None } else { sun_path(&settings.sun, &scene, &mut warnings)? };
     let lamp = lamp_path(settings, path.as_ref())?.filter(|_| settings.bakes_intervals);
     let no_sun = if is_lamp_alone { NoSun::LampInstead } else { NoSun::DoesNotRise };
     let plan = EffectPlan::new(&scene, path.as_ref(), lamp.as_ref(), settings, no_sun);
     Ok(Prepared { scene, path, lamp, plan, warnings, load_seconds: 0.0 })
+}
+
+/// A word about a scene in which nothing is left that can be shaded.
+fn nothing_warning(scene: &Scene) -> Option<Warning> {
+    let any = |has: fn(&Scene, usize) -> bool| (0..scene.instances.len()).any(|instance| has(scene, instance));
+    let is_empty = !any(Scene::is_there);
+    (!any(Scene::receives)).then_some(Warning::NothingToBake { is_empty })
 }
 
 /// A word about panes that let the light through.
@@ -104,7 +112,10 @@ pub fn sun_path(
 ) -> Result<Option<SunPath>, BakeError> {
     let request = match (request, scene.sun_direction) {
         (SunRequest::Keyed { json, north_deg }, _) => return Ok(Some(sun::parse_keyed(json, *north_deg)?)),
-        (SunRequest::SceneOr(_), Some(direction)) => {
+        (SunRequest::SceneOr(day), Some(direction)) => {
+            if day.north_deg != 0.0 {
+                warnings.push(Warning::NorthUnused { north_deg: day.north_deg });
+            }
             let radius_rad = sun::SUN_ANGULAR_RADIUS_DEG.to_radians();
             return Ok(Some(sun::fixed_light(direction, radius_rad)?));
         }

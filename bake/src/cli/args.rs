@@ -35,9 +35,11 @@ pub enum Command {
     /// Print some covered texels of a set as JSON lines.
     ///
     /// Each line holds one texel: atlas, x, y, instance, position, normal, double_sided, origin (where rays towards the
-    /// sun start), origin_back, lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same
-    /// for each lane, where there are several), lamp (when it sees the lamp, where the set has one), ao, ao_back, bent
-    /// and sky. With these, any ray tracer can check a bake.
+    /// sun start) and origin_back; on smooth surfaces shading_normal, and origin_lifted and origin_lifted_back (the
+    /// same towards suns that only the shading normal faces); is_filled (where a buried texel has its neighbours'
+    /// times); lit (when it sees the sun, as fractions of the path in sunbake.json), lanes (the same for each lane,
+    /// where there are several: offset_deg, weight and lit), lamp (when it sees the lamp, where the set has one), ao,
+    /// ao_back, bent and sky. With these, any ray tracer can check a bake.
     Texels(TexelsArgs),
     /// Measure what accuracy costs on a scene and this machine.
     ///
@@ -123,7 +125,8 @@ pub struct BakeArgs {
 pub struct PathArgs {
     #[command(flatten)]
     pub day: SunArgs,
-    /// Part of the day to bake, by local clocks; may pass midnight. [default: sunrise to sunset]
+    /// Part of the day to bake, by local clocks; may pass midnight. Equal times are a whole day. [default: sunrise to
+    /// sunset]
     #[arg(long, value_name = "HH:MM-HH:MM", value_parser = parse_window)]
     pub window: Option<[f64; 2]>,
     /// A file of keyed directions or positions instead of a place and a date.
@@ -331,9 +334,51 @@ pub struct TexelsArgs {
 mod tests {
     use super::*;
     use clap::CommandFactory;
+    use sunbake::texels::{Texel, TexelLane};
 
     #[test]
     fn the_options_are_consistent() {
         Args::command().debug_assert();
+    }
+
+    /// A texel with all that a texel can have.
+    fn whole_texel() -> Texel {
+        let lanes = vec![TexelLane { offset_deg: 0.0, weight: 1.0, lit: Vec::new() }];
+        Texel {
+            atlas: 0,
+            x: 0,
+            y: 0,
+            instance: 0,
+            position: [0.0; 3],
+            normal: [0.0; 3],
+            double_sided: true,
+            origin: [0.0; 3],
+            origin_back: Some([0.0; 3]),
+            shading_normal: Some([0.0; 3]),
+            origin_lifted: Some([0.0; 3]),
+            origin_lifted_back: Some([0.0; 3]),
+            is_filled: true,
+            lit: Vec::new(),
+            lanes,
+            lamp: Some(Vec::new()),
+            ao: Some(0.0),
+            ao_back: Some(0.0),
+            bent: Some([0.0; 3]),
+            sky: Some([0.0; 9]),
+        }
+    }
+
+    #[test]
+    fn the_help_names_every_field_of_a_texel() {
+        let command = Args::command();
+        let texels = command.find_subcommand("texels").expect("a command");
+        let help = texels.get_long_about().expect("a text").to_string();
+        let words: Vec<&str> = help.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        let texel = serde_json::to_value(whole_texel()).expect("JSON");
+        let fields = [&texel, &texel["lanes"][0]].map(|value| value.as_object().expect("an object"));
+        assert!(fields[0].len() >= 20, "some field was left out: {texel}");
+        for field in fields.into_iter().flat_map(|fields| fields.keys()) {
+            assert!(words.contains(&field.as_str()), "{field}: {help}");
+        }
     }
 }

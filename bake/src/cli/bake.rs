@@ -3,10 +3,11 @@
 use super::args::{AmbientArgs, BakeArgs, Only, OutputArgs, PathArgs, Preset};
 use super::summary;
 use std::path::Path;
-use sunbake::BakeReport;
 use sunbake::atlas::Density;
 use sunbake::console::{Command, Failure, ProgressLine, print, print_json, warn_all};
 use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
+use sunbake::sun::KeyedError;
+use sunbake::{BakeError, BakeReport};
 
 /// Bakes, and tells what came of it.
 pub fn run(args: &BakeArgs) -> Result<(), Failure> {
@@ -18,7 +19,7 @@ pub fn run(args: &BakeArgs) -> Result<(), Failure> {
     };
     let baked = sunbake::bake(&args.scene, target, args.force, &settings, &progress);
     progress.clear();
-    let report = baked.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
+    let report = baked.map_err(|error| failure(error, args).after_signal(progress.signal_code()))?;
     tell(args, target, &report, &progress)
 }
 
@@ -46,7 +47,7 @@ fn tell(args: &BakeArgs, target: &Path, report: &BakeReport, progress: &Progress
 fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &ProgressLine) -> Result<(), Failure> {
     let prepared = sunbake::prepare(&args.scene, settings, progress);
     progress.clear();
-    let prepared = prepared.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
+    let prepared = prepared.map_err(|error| failure(error, args).after_signal(progress.signal_code()))?;
     let OutputArgs { json, quiet, .. } = args.printing;
     if !quiet {
         warn_all(&prepared.warnings, Command::Sunbake);
@@ -168,6 +169,30 @@ fn flag_given(given: &AmbientArgs) -> Option<&'static str> {
 fn path_file(file: &Path, flag: &str) -> Result<String, Failure> {
     std::fs::read_to_string(file)
         .map_err(|e| Failure::io(format!("cannot read the path {}: {e}; check {flag}", file.display())))
+}
+
+fn failure(error: BakeError, args: &BakeArgs) -> Failure {
+    let file = path_file_of(&error, &args.sun, args.lamp.lamp.as_deref());
+    in_file(error.into(), file)
+}
+
+/// The file of a path that an error is about.
+pub(super) fn path_file_of<'a>(error: &BakeError, given: &'a PathArgs, lamp: Option<&'a Path>) -> Option<&'a Path> {
+    match error {
+        // Where both have a lamp, neither is read.
+        BakeError::LampFile(_) | BakeError::Lamp(_) => lamp.or(given.path.as_deref()),
+        BakeError::Keyed(KeyedError::North(_)) => None,
+        BakeError::Keyed(_) => given.path.as_deref(),
+        _ => None,
+    }
+}
+
+/// A failure with the file that it is about, if there is one, before its text.
+pub(super) fn in_file(failure: Failure, file: Option<&Path>) -> Failure {
+    match file {
+        Some(file) => Failure { message: format!("{}: {}", file.display(), failure.message), ..failure },
+        None => failure,
+    }
 }
 
 /// The sun that options ask for.

@@ -1,11 +1,11 @@
 //! `sunbake cost`.
 
 use super::args::{CostCommandArgs, OutputArgs};
-use super::bake::sun;
+use super::bake::{in_file, path_file_of, sun};
 use std::fmt::Write;
 use sunbake::console::{Failure, ProgressLine, print, print_json, warn};
 use sunbake::cost::report::{CostReport, CostRow};
-use sunbake::cost::{self, CostSettings};
+use sunbake::cost::{self, CostError, CostSettings};
 use sunbake::report::folder::{self, REPORT_HTML, REPORT_JSON};
 use sunbake::report::{plain, with_unit};
 
@@ -24,10 +24,19 @@ pub fn run(args: &CostCommandArgs) -> Result<(), Failure> {
     let folder = folder::begin(&args.output, args.force, REPORT_JSON)?;
     let measured = cost::cost(&args.scene, &settings, folder.path(), &progress);
     progress.clear();
-    let report = measured.map_err(|error| Failure::from(error).after_signal(progress.signal_code()))?;
+    let report = measured.map_err(|error| failure(error, args).after_signal(progress.signal_code()))?;
     let files = [(REPORT_JSON, report.json().into_bytes()), (REPORT_HTML, cost::html(&report).into_bytes())];
     folder::finish(folder, &files)?;
     tell(args, &report)
+}
+
+fn failure(error: CostError, args: &CostCommandArgs) -> Failure {
+    let file = match &error {
+        CostError::Bake(error) => path_file_of(error, &args.sun, None),
+        CostError::NoSun(_) => args.sun.path.as_deref(),
+        _ => None,
+    };
+    in_file(error.into(), file)
 }
 
 fn tell(args: &CostCommandArgs, report: &CostReport) -> Result<(), Failure> {

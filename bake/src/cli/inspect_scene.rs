@@ -4,8 +4,9 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
-use sunbake::console::{Failure, print, print_json};
-use sunbake::scene::{LoadLimits, Role, Scene};
+use sunbake::console::{Failure, print, print_json, warn};
+use sunbake::scene::{LoadLimits, Role, Scene, load, load_without_pictures};
+use sunbake::words::{counted, either};
 
 /// A material, node or mesh.
 #[derive(Debug, Serialize)]
@@ -29,16 +30,16 @@ struct SceneParts {
 
 /// Prints what a scene has to name, as text or JSON.
 pub fn run(file: &Path, as_json: bool) -> Result<(), Failure> {
-    let scene = sunbake::scene::load(file, &LoadLimits::default()).map_err(sunbake::BakeError::Load)?;
+    let scene = load_what_can_be(file)?;
     let parts = parts(&scene);
     if as_json {
         return print_json(&parts);
     }
     let extent_m = 2.0 * scene.half_extent_m;
     let mut text = format!(
-        "{}: {} triangles, {:.1} x {:.1} x {:.1} m\n",
+        "{}: {}, {:.1} x {:.1} x {:.1} m\n",
         file.display(),
-        scene.triangle_count(),
+        counted(scene.triangle_count() as u64, "triangle"),
         extent_m.x,
         extent_m.y,
         extent_m.z
@@ -48,11 +49,33 @@ pub fn run(file: &Path, as_json: bool) -> Result<(), Failure> {
         let _ = writeln!(text, "\n{kind}");
         for NamedPart { index, name, triangles, role } in parts {
             let name = name.as_deref().unwrap_or("-");
-            let _ = writeln!(text, "  {index:<14}{name:<32}{triangles:>9} triangles  {}", role.join(", "));
+            let _ = writeln!(
+                text,
+                "  {index:<14}{name:<32}{triangles:>9} {:<11}{}",
+                either(*triangles as u64, "triangle", "triangles"),
+                role.join(", ")
+            );
         }
     }
     let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
     print(&(lines.join("\n") + "\n"))
+}
+
+/// The scene; where its pictures stop it from being read, without them, and a line that says so.
+fn load_what_can_be(file: &Path) -> Result<Scene, Failure> {
+    let limits = LoadLimits::default();
+    let error = match load(file, &limits) {
+        Ok(scene) => return Ok(scene),
+        Err(error) => error,
+    };
+    match load_without_pictures(file, &limits) {
+        Ok(scene) => {
+            warn(&format!("{error}; listed all the same, without what pictures say of transparency"));
+            Ok(scene)
+        }
+        // Something else stops it.
+        Err(_) => Err(error.into()),
+    }
 }
 
 /// What drawn instances have in common.

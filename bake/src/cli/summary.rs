@@ -9,6 +9,7 @@ use sunbake::disk::manifest::{
     SeamEntry, StepSeconds,
 };
 use sunbake::settings::BakeSettings;
+use sunbake::words::counted;
 
 /// Lines of a label and a value, in two columns.
 #[derive(Default)]
@@ -60,8 +61,8 @@ pub fn of(manifest: &Manifest) -> String {
 pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
     let mut lines = Lines::default();
     let sun = prepared.path.as_ref().map(|path| match (path.local_text(0.0), path.local_text(1.0)) {
-        (Some(start), Some(end)) => format!("{start} to {end}, {} arc(s)", path.arcs().len()),
-        _ => format!("{} arc(s), {:.0} minutes", path.arcs().len(), path.duration_min),
+        (Some(start), Some(end)) => format!("{start} to {end}, {}", counted(path.arcs().len() as u64, "arc")),
+        _ => format!("{}, {:.0} minutes", counted(path.arcs().len() as u64, "arc"), path.duration_min),
     });
     let none = if prepared.lamp.is_some() { "none" } else { "it does not rise: no times would be stored" };
     lines.line("sun", sun.unwrap_or(none.into()));
@@ -70,17 +71,18 @@ pub fn request(prepared: &Prepared, settings: &BakeSettings) -> String {
         lines.line("lamp", lamp_text(keys, length_m, path.radius_m(), path.duration_min()));
     }
     let (triangles, instances) = (prepared.scene.triangle_count(), prepared.scene.instances.len());
-    lines.line("scene", format!("{}, {}", count(triangles as u64, "triangle"), count(instances as u64, "instance")));
+    lines
+        .line("scene", format!("{}, {}", counted(triangles as u64, "triangle"), counted(instances as u64, "instance")));
     let edge = settings.page_size_texels;
     let pages = match settings.density {
-        Density::Pages(n) => format!("{} of {edge} x {edge}, as dense as fits", count(n.into(), "page")),
+        Density::Pages(n) => format!("{} of {edge} x {edge}, as dense as fits", counted(n.into(), "page")),
         Density::TexelsPerMetre(d) => format!("{d} texels/m, on pages of at most {edge} x {edge}"),
     };
     lines.line("atlas", pages);
     if !settings.bakes_intervals {
         return lines.0;
     }
-    let layers = count(settings.layer_cap as u64, "layer");
+    let layers = counted(settings.layer_cap as u64, "layer");
     let lanes = in_lanes(prepared.plan.lane_count(settings.lane_count));
     lines.line("times", format!("{} bits, at most {layers}{lanes}", settings.bits.count()));
     let edges = || format!(", edges to {} s", settings.edge_seconds);
@@ -113,14 +115,9 @@ fn by_step(seconds: &StepSeconds) -> [(&'static str, f64); 7] {
     ]
 }
 
-/// `1 page`, `2 pages`.
-fn count(n: u64, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
-}
-
 fn sun(path: &PathEntry) -> String {
     let (Some(place), Some([start, end]), Some(offset)) = (&path.place, &path.local, path.utc_offset_h) else {
-        return format!("{}, {:.0} minutes", count(path.arcs.len() as u64, "arc"), path.duration_min);
+        return format!("{}, {:.0} minutes", counted(path.arcs.len() as u64, "arc"), path.duration_min);
     };
     let error_deg = path.ephemeris_error_deg.unwrap_or(0.0);
     let (latitude, longitude) = (place.latitude_deg, place.longitude_deg);
@@ -142,7 +139,7 @@ fn lamp_times(manifest: &Manifest, entry: &LampEntry) -> String {
     let layers = manifest.atlases.iter().filter_map(|a| a.lamp.as_ref()).map(|l| l.layers.len()).max().unwrap_or(0);
     let stats = &entry.stats;
     let mean = stats.intervals as f64 / (manifest.stats.texels as f64).max(1.0);
-    let layers = count(layers as u64, "layer");
+    let layers = counted(layers as u64, "layer");
     format!("{layers}; {mean:.2} intervals a texel, {} at most; found by {}", stats.most_intervals, stats.engine)
 }
 
@@ -164,8 +161,8 @@ fn sky(entry: &AmbientEntry, seconds: f64) -> String {
         count => format!(", {count} not to that error"),
     };
     format!(
-        "{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} texels buried{unconverged}",
-        entry.buried_texels
+        "{rays}{within}; {millions:.1} M rays at {speed:.1} M/s; {} buried{unconverged}",
+        counted(entry.buried_texels, "texel")
     )
 }
 
@@ -182,17 +179,17 @@ fn seams(entry: &SeamEntry) -> String {
 fn merging(error: &ErrorEntry) -> String {
     match error.merged_texels {
         0 => "nothing lost".into(),
-        merged => format!("{}; {merged} texels", loss(&error.merge_min)),
+        merged => format!("{}; {}", loss(&error.merge_min), counted(merged, "texel")),
     }
 }
 
 fn scene(manifest: &Manifest) -> String {
     let stats = &manifest.stats;
-    let mut text = count(stats.triangles, "triangle");
+    let mut text = counted(stats.triangles, "triangle");
     if stats.dropped_triangles > 0 {
         let _ = write!(text, " ({} degenerate left out)", stats.dropped_triangles);
     }
-    text + ", " + &count(manifest.instances.len() as u64, "instance")
+    text + ", " + &counted(manifest.instances.len() as u64, "instance")
 }
 
 fn atlas(manifest: &Manifest) -> String {
@@ -204,7 +201,11 @@ fn atlas(manifest: &Manifest) -> String {
     };
     let (texels, all) = (manifest.stats.texels, manifest.stats.page_texels);
     let filled = 100.0 * texels as f64 / (all as f64).max(1.0);
-    format!("{pages}, {texels} texels used ({filled:.0} %), {:.3} texels/m", manifest.scene.texels_per_metre)
+    format!(
+        "{pages}, {} used ({filled:.0} %), {:.3} texels/m",
+        counted(texels, "texel"),
+        manifest.scene.texels_per_metre
+    )
 }
 
 /// What several lanes add to a number of layers or intervals.
@@ -217,7 +218,7 @@ fn times(manifest: &Manifest) -> String {
     let lanes = manifest.atlases.iter().map(|a| a.lanes.len()).max().unwrap_or(0).max(1);
     let layers = manifest.atlases.iter().flat_map(|a| &a.lanes).map(|lane| lane.layers.len()).max().unwrap_or(0);
     let mean = stats.intervals as f64 / (stats.texels as f64 * lanes as f64).max(1.0);
-    let layers = count(layers as u64, "layer") + &in_lanes(lanes);
+    let layers = counted(layers as u64, "layer") + &in_lanes(lanes);
     let a_texel = if lanes > 1 { "a texel and lane" } else { "a texel" };
     format!("{} bits, {layers}; {mean:.2} intervals {a_texel}, {} at most", manifest.bits, stats.most_intervals)
 }
@@ -249,7 +250,7 @@ fn engine(manifest: &Manifest) -> String {
             a_texel(stats.triangle_tests)
         )
     };
-    format!("{}, {work} on {}", stats.engine, count(stats.threads as u64, "thread"))
+    format!("{}, {work} on {}", stats.engine, counted(stats.threads as u64, "thread"))
 }
 
 fn cost(manifest: &Manifest) -> String {

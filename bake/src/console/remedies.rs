@@ -105,6 +105,12 @@ fn clauses(remedy: &Remedy, command: Command) -> Vec<Clause> {
             let verb = if *setting == Setting::Renderer { "draw with" } else { "give" };
             option(*setting, command).map(|name| Clause::new(verb, format!("{name} {value}"), ""))
         }
+        Remedy::SetAll(settings) => {
+            let given = |(setting, value): &(Setting, String)| Some(format!("{} {value}", option(*setting, command)?));
+            let all: Option<Vec<String>> = settings.iter().map(given).collect();
+            all.map(|all| Clause::new("give", format!("both {}", all.join(" and ")), ""))
+        }
+        Remedy::ListNames => Some(Clause::new("", "list the names with `sunbake inspect SCENE`", "")),
         Remedy::Do(what) => Some(Clause::new("", *what, "")),
         Remedy::Rebake(change) => {
             let how = text(change, Command::Sunbake).map(|text| text.replacen("give ", "", 1));
@@ -165,6 +171,17 @@ mod tests {
             Remedy::Rebake(Box::new(Remedy::Lower(Setting::PageSize))),
         ]);
         assert_eq!(text(&limit, Command::Sunplay), "draw with --renderer cpu, or bake again with a smaller --size");
+        let names = Remedy::any([Remedy::Change(Setting::NoCast), Remedy::ListNames]);
+        assert_eq!(
+            text(&names, Command::Sunplay),
+            "give another --no-cast, or list the names with `sunbake inspect SCENE`"
+        );
+        let set = |setting| (setting, "sky".to_owned());
+        let dome = Remedy::any([
+            Remedy::Set(Setting::LeaveOut, "sky".into()),
+            Remedy::SetAll(vec![set(Setting::NoCast), set(Setting::NoReceive)]),
+        ]);
+        assert_eq!(text(&dome, Command::Sunbake), "give --leave-out sky or both --no-cast sky and --no-receive sky");
         assert_eq!(text(&Remedy::Omit(Setting::Lamp), Command::Sunbake), "leave --lamp out");
         assert_eq!(text(&Remedy::Omit(Setting::Lamp), Command::Sunplay), "");
     }

@@ -25,13 +25,13 @@ pub struct FolderKind {
 /// Why a folder could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
-    /// The target exists already.
+    /// The target is an older folder of this kind, which only force replaces.
     #[error("{} exists", target.display())]
     Exists {
         /// The target.
         target: PathBuf,
     },
-    /// The target exists and is something else, so it is not replaced even if forced.
+    /// The target exists and is something else, so it is never replaced, forced or not.
     #[error("{} exists and is not {what}, so it is never replaced", target.display())]
     NotOurs {
         /// The target.
@@ -114,12 +114,11 @@ fn check_target(target: &Path, force: bool, kind: FolderKind) -> Result<(), Fold
     if metadata.is_dir() && is_empty() {
         return Ok(());
     }
-    if !force {
-        return Err(FolderError::Exists { target: target.to_owned() });
-    }
-    match metadata.is_dir() && target.join(kind.marker).is_file() {
-        true => Ok(()),
-        false => Err(FolderError::NotOurs { target: target.to_owned(), what: kind.what }),
+    let is_ours = metadata.is_dir() && target.join(kind.marker).is_file();
+    match (is_ours, force) {
+        (true, true) => Ok(()),
+        (true, false) => Err(FolderError::Exists { target: target.to_owned() }),
+        (false, _) => Err(FolderError::NotOurs { target: target.to_owned(), what: kind.what }),
     }
 }
 

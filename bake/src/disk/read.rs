@@ -62,10 +62,22 @@ pub enum ReadError {
         /// Why the system could not read it.
         source: std::io::Error,
     },
+    /// There is nothing of that name.
+    #[error("{} is not there: check its name", path.display())]
+    Missing {
+        /// What was named.
+        path: PathBuf,
+    },
+    /// It is a file.
+    #[error("{} is a file, and a baked set is a folder: give the folder that a bake wrote", path.display())]
+    File {
+        /// What was named.
+        path: PathBuf,
+    },
     /// There is no manifest in the folder.
     #[error(
-        "{} holds no {MANIFEST_FILE}, so it is not a baked set: make one with `sunbake bake SCENE -o {}`",
-        folder.display(),
+        "{} holds no {MANIFEST_FILE}, so it is not a baked set: check its name, or make a set with \
+         `sunbake bake SCENE -o SET`",
         folder.display()
     )]
     NotASet {
@@ -108,6 +120,8 @@ pub fn read(folder: &Path) -> Result<BakedSet, ReadError> {
 pub fn read_manifest(folder: &Path) -> Result<Manifest, ReadError> {
     let path = folder.join(MANIFEST_FILE);
     let text = std::fs::read_to_string(&path).map_err(|source| match source.kind() {
+        _ if !folder.exists() => ReadError::Missing { path: folder.to_owned() },
+        _ if folder.is_file() => ReadError::File { path: folder.to_owned() },
         std::io::ErrorKind::NotFound => ReadError::NotASet { folder: folder.to_owned() },
         _ => ReadError::Io { path: path.clone(), source },
     })?;

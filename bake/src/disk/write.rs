@@ -215,7 +215,9 @@ mod tests {
         let precious = folder.path().join("home");
         std::fs::create_dir(&precious).unwrap();
         std::fs::write(precious.join("letter.txt"), "dear").unwrap();
-        assert!(matches!(write(&precious, true, Bits::Eight), Err(WriteError::NotOurs { .. })));
+        for force in [false, true] {
+            assert!(matches!(write(&precious, force, Bits::Eight), Err(WriteError::NotOurs { .. })), "{force}");
+        }
         assert!(precious.join("letter.txt").exists());
     }
 

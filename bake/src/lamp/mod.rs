@@ -12,6 +12,7 @@ mod parse;
 
 pub use parse::{LampFileError, is_lamp, parse_lamp};
 
+use crate::words::counted;
 use glam::DVec3;
 
 /// Largest coordinate of a key, in metres.
@@ -56,7 +57,7 @@ pub struct LampPath {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LampError {
     /// Fewer than two keys.
-    #[error("the lamp's path has {0} keys: give at least two positions")]
+    #[error("the lamp's path has {}: give at least two positions", counted(*.0 as u64, "key"))]
     Count(usize),
     /// A position is not finite or too large.
     #[error("key {index} of the lamp's path (counted from 0) is at {position_m}: give metres from -1e9 to 1e9")]

@@ -6,6 +6,7 @@ use super::{Decision, Effect, Facts, LayersNeeded, NoSun};
 use crate::disk::manifest::EffectEntry;
 use crate::maps::Bits;
 use crate::settings::{AmbientRequest, EngineChoice};
+use crate::words::{counted, either};
 
 /// What the manifest says of a decision.
 pub(super) fn entry(decision: &Decision) -> EffectEntry {
@@ -21,9 +22,11 @@ pub(super) fn entry(decision: &Decision) -> EffectEntry {
 
 fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
     match facts {
-        Facts::Sun { arcs: Ok(arcs), .. } => format!("the sun is up, along {arcs} arc(s)"),
+        Facts::Sun { arcs: Ok(arcs), .. } => format!("the sun is up, along {}", counted(arcs as u64, "arc")),
         Facts::Sun { arcs: Err(no_sun), .. } => why_no_sun(no_sun).into(),
-        Facts::Lamp { segments: Some(segments), .. } => format!("a lamp moves along {segments} straight segment(s)"),
+        Facts::Lamp { segments: Some(segments), .. } => {
+            format!("a lamp moves along {}", counted(segments as u64, "straight segment"))
+        }
         Facts::Lamp { segments: None, .. } => "no lamp is asked for; --lamp bakes one beside the sun".into(),
         Facts::Widths { sun_radius_deg, lamp_radius_m } => why_penumbra(sun_radius_deg, lamp_radius_m),
         Facts::Lanes { has_width: None, .. } => "there is no sun".into(),
@@ -42,23 +45,35 @@ fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Losses { is_asked: false, .. } => "not asked for".into(),
         Facts::Losses { has_times: true, .. } => "--loss-map asks for it".into(),
         Facts::Losses { .. } => "no times are stored, and none can be lost".into(),
-        Facts::Surfaces { surfaces, .. } if effect == Effect::AlphaMask => {
-            format!("{surfaces} drawn surfaces have an alpha mask")
-        }
-        Facts::Surfaces { surfaces, .. } => format!("{surfaces} drawn surfaces are double-sided"),
+        Facts::Surfaces { surfaces, .. } => why_surfaces(effect, surfaces as u64),
         Facts::Smooth { is_asked: false, .. } => "--flat-terminator: light ends face by face".into(),
         Facts::Smooth { has_times: false, .. } => "no times are stored".into(),
         Facts::Smooth { triangles: 0, .. } => "no surface of several faces is smooth-shaded".into(),
-        Facts::Smooth { triangles, .. } => format!("{triangles} triangles are facets of smooth-shaded surfaces"),
+        Facts::Smooth { triangles, .. } => {
+            let triangles = triangles as u64;
+            let are = either(triangles, "is a facet", "are facets");
+            format!("{} {are} of smooth-shaded surfaces", counted(triangles, "triangle"))
+        }
         Facts::Walls { pages: None } => "wherever a wall stands between neighbouring texels".into(),
-        Facts::Walls { pages: Some([0, all]) } => format!("no wall stands between texels of {all} pages"),
+        Facts::Walls { pages: Some([0, all]) } => {
+            format!("no wall stands between texels of {}", counted(all as u64, "page"))
+        }
+        Facts::Walls { pages: Some([1, 1]) } => "walls stand between neighbouring texels of the page".into(),
         Facts::Walls { pages: Some([walled, all]) } => {
-            format!("walls stand between neighbouring texels of {walled} of {all} pages")
+            format!("walls stand between neighbouring texels of {walled} of {}", counted(all as u64, "page"))
         }
         Facts::Ambient(None) => "--only asks for no ao".into(),
         Facts::Ambient(Some(request)) if is_on => why_ambient(effect, &request),
         Facts::Ambient(Some(_)) => why_no_ambient(effect).into(),
     }
+}
+
+fn why_surfaces(effect: Effect, surfaces: u64) -> String {
+    let what = match effect {
+        Effect::AlphaMask => either(surfaces, "has an alpha mask", "have an alpha mask"),
+        _ => either(surfaces, "is double-sided", "are double-sided"),
+    };
+    format!("{} {what}", counted(surfaces, "drawn surface"))
 }
 
 fn why_no_sun(no_sun: NoSun) -> &'static str {
@@ -81,10 +96,12 @@ fn why_penumbra(sun_radius_deg: Option<f64>, lamp_radius_m: Option<f64>) -> Stri
 /// Of how many layers were needed after all.
 fn why_layers(cap: usize, needed: LayersNeeded) -> String {
     let LayersNeeded { layers, crowded_texels, texels } = needed;
-    let crowded = format!("{crowded_texels} of {texels} texels have more than four intervals");
+    let have = either(crowded_texels, "has", "have");
+    let all = counted(texels, "texel");
+    let crowded = format!("{crowded_texels} of {all} {have} more than four intervals");
     match (layers, crowded_texels) {
         (2.., _) => format!("{crowded}: {layers} layers"),
-        (_, 0) => format!("none of {texels} texels has more than four intervals: one layer holds them all"),
+        (_, 0) => format!("none of {all} has more than four intervals: one layer holds them all"),
         _ if cap > 1 => format!("{crowded}, but rounding leaves no more than four"),
         _ => format!("{crowded}, and --layers 1 merged them"),
     }
@@ -149,11 +166,14 @@ fn cost(effect: Effect, is_on: bool, facts: Facts) -> String {
             "alpha looked up wherever a triangle with an alpha mask is met".into()
         }
         Facts::Surfaces { triangles, .. } if effect == Effect::AlphaMask => {
-            format!("alpha looked up wherever one of {triangles} triangles with an alpha mask is met")
+            format!(
+                "alpha looked up wherever one of {} with an alpha mask is met",
+                counted(triangles as u64, "triangle")
+            )
         }
         Facts::Surfaces { triangles, .. } => format!(
             "times serve both sides; ambient light takes rays and bytes for a second side{}",
-            if triangles > 0 { format!(" of {triangles} triangles") } else { String::new() }
+            if triangles > 0 { format!(" of {}", counted(triangles as u64, "triangle")) } else { String::new() }
         ),
         Facts::Smooth { .. } => "a short ray and a second query a texel of such a surface".into(),
         Facts::Walls { .. } => "two rays a texel, twelve where something is in the way, and 2 bytes".into(),
@@ -265,5 +285,38 @@ fn ambient_toggle(effect: Effect, is_on: bool, has_ambient: bool) -> String {
         (true, _) => off.into(),
         (false, true) => on.into(),
         (false, false) => format!("{on}, with ao among what --only names"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_of_a_kind_is_singular() {
+        let sun = |arcs| Facts::Sun { arcs: Ok(arcs), bits: Bits::Eight, engine: EngineChoice::Exact };
+        let lamp = |count| Facts::Lamp { segments: Some(count), bits: Bits::Eight, engine: EngineChoice::Exact };
+        let surfaces = |surfaces| Facts::Surfaces { surfaces, triangles: surfaces };
+        for (effect, one, several, of_one, of_several) in [
+            (Effect::SunIntervals, sun(1), sun(2), "along 1 arc", "along 2 arcs"),
+            (Effect::LampIntervals, lamp(1), lamp(2), "1 straight segment", "2 straight segments"),
+            (Effect::AlphaMask, surfaces(1), surfaces(2), "surface has an alpha mask", "surfaces have an alpha mask"),
+            (Effect::DoubleSided, surfaces(1), surfaces(2), "surface is double-sided", "surfaces are double-sided"),
+            (
+                Effect::Walls,
+                Facts::Walls { pages: Some([0, 1]) },
+                Facts::Walls { pages: Some([1, 2]) },
+                "texels of 1 page",
+                "texels of 1 of 2 pages",
+            ),
+        ] {
+            for (facts, expected) in [(one, of_one), (several, of_several)] {
+                let text = why(effect, true, facts);
+                assert!(text.ends_with(expected), "{text}: {expected}");
+            }
+        }
+        let needed = |crowded_texels| LayersNeeded { layers: 2, crowded_texels, texels: 9 };
+        assert_eq!(why_layers(4, needed(1)), "1 of 9 texels has more than four intervals: 2 layers");
+        assert_eq!(why_layers(4, needed(3)), "3 of 9 texels have more than four intervals: 2 layers");
     }
 }

@@ -9,6 +9,7 @@ use super::{
     limits::MemoryBudget,
     resources::Buffers,
 };
+use crate::words::{counted, either};
 
 /// What is needed to read accessors.
 #[derive(Clone, Copy)]
@@ -271,8 +272,9 @@ impl<'a> Reader<'a> {
             _ => (count - 1).saturating_mul(stride).saturating_add(size as u64).saturating_add(offset),
         };
         if needed > bytes.len() as u64 {
+            let (elements, need) = (counted(count, "element"), either(count, "needs", "need"));
             let problem =
-                format!("its {count} elements need {needed} bytes of bufferViews[{view}], which has {}", bytes.len());
+                format!("its {elements} {need} {needed} bytes of bufferViews[{view}], which has {}", bytes.len());
             return Err(LoadError::structure(place::<document::JsonAccessor>(index), problem));
         }
         let bytes = bytes.get(offset as usize..).unwrap_or(&[]);

@@ -67,7 +67,7 @@ pub enum LoadError {
          https://github.khronos.org/glTF-Validator"
     )]
     Structure {
-        /// Where in the file, for example `accessors[12]`.
+        /// Where in the file, and what refers to it: `accessors[12] (POSITION of meshes[3] primitive 0)`.
         place: String,
         /// What is wrong there.
         problem: String,
@@ -140,7 +140,7 @@ pub enum LoadError {
         parent: usize,
     },
     /// The scene draws no triangle, so there is nothing to bake.
-    #[error("{path} draws no triangles: {cause}", path = .path.display())]
+    #[error("{path} draws no triangles, so there is nothing to bake or to shade: {cause}", path = .path.display())]
     NoTriangles {
         /// The file.
         path: PathBuf,
@@ -161,6 +161,14 @@ fn size(bytes: u64) -> String {
 impl LoadError {
     pub(super) fn structure(place: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Structure { place: place.into(), problem: problem.into() }
+    }
+
+    /// The same with who refers to the place: `accessors[9] (POSITION of meshes[3] primitive 0)`.
+    pub(super) fn used_as(self, role: &str, user: impl std::fmt::Display) -> Self {
+        match self {
+            Self::Structure { place, problem } => Self::structure(format!("{place} ({role} of {user})"), problem),
+            other => other,
+        }
     }
 
     pub(super) fn read(path: &Path, cause: &dyn ToString, advice: &'static str) -> Self {

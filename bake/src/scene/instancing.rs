@@ -7,6 +7,7 @@ use super::{
     LoadError,
     accessors::Reader,
     document::{JsonNode, place},
+    nodes::label,
 };
 use glam::{DMat4, DQuat, DVec3, DVec4, Vec3};
 use serde_json::Value;
@@ -29,9 +30,11 @@ pub(super) fn copies(reader: Reader, node: &JsonNode, index: usize) -> Result<Op
         let attribute = extension.get("attributes").and_then(|attributes| attributes.get(name));
         attribute.and_then(Value::as_u64).map(|accessor| accessor as usize)
     };
+    let of_node = |error: LoadError| error.used_as(GPU_INSTANCING, label(node, index));
     let [translations, scales] = ["TRANSLATION", "SCALE"].map(|name| accessor(name).map(|a| reader.floats::<3>(a)));
-    let (translations, scales) = (translations.transpose()?, scales.transpose()?);
-    let rotations = accessor("ROTATION").map(|a| reader.floats::<4>(a)).transpose()?;
+    let (translations, scales) = (translations.transpose(), scales.transpose());
+    let (translations, scales) = (translations.map_err(of_node)?, scales.map_err(of_node)?);
+    let rotations = accessor("ROTATION").map(|a| reader.floats::<4>(a)).transpose().map_err(of_node)?;
     let lengths =
         [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
     // Copies without a transform lie on one another.

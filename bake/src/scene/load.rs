@@ -32,8 +32,30 @@ use std::{
 /// Problems that affect only the look are [`Scene::warnings`].
 pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
     let budget = MemoryBudget::new(limits);
-    let bytes = container::read_file(path, &budget, "check the path and its permissions")?;
-    parse_within(path, &Arc::new(bytes), &budget)
+    let bytes = container::read_file(path, &budget, CHECK_PATH)?;
+    parse_within(path, &Arc::new(bytes), &budget, Pictures::Read)
+}
+
+/// Loads a glTF or GLB file without its pictures, wherever they lie: what it has to name, and its geometry. Surfaces
+/// have the alpha of their factors and vertices alone.
+///
+/// # Errors
+///
+/// As [`load`], but for pictures.
+pub fn load_without_pictures(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
+    let budget = MemoryBudget::new(limits);
+    let bytes = container::read_file(path, &budget, CHECK_PATH)?;
+    parse_within(path, &Arc::new(bytes), &budget, Pictures::Skip)
+}
+
+/// What to do about a scene that cannot be read.
+const CHECK_PATH: &str = "check the path and its permissions";
+
+/// Whether images are read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pictures {
+    Read,
+    Skip,
 }
 
 /// Reads the bytes of a glTF or GLB file. Messages name it by `path`, and files that it names are looked for beside
@@ -43,10 +65,15 @@ pub fn load(path: &Path, limits: &LoadLimits) -> Result<Scene, LoadError> {
 ///
 /// As [`load`].
 pub fn parse(path: &Path, bytes: &[u8], limits: &LoadLimits) -> Result<Scene, LoadError> {
-    parse_within(path, &Arc::new(bytes.to_vec()), &MemoryBudget::new(limits))
+    parse_within(path, &Arc::new(bytes.to_vec()), &MemoryBudget::new(limits), Pictures::Read)
 }
 
-fn parse_within(path: &Path, bytes: &Arc<Vec<u8>>, budget: &MemoryBudget) -> Result<Scene, LoadError> {
+fn parse_within(
+    path: &Path,
+    bytes: &Arc<Vec<u8>>,
+    budget: &MemoryBudget,
+    wanted: Pictures,
+) -> Result<Scene, LoadError> {
     let Container { json, binary } = Container::parse(path, bytes, budget)?;
     let doc = Document { root: json };
     refuse::check_required(&doc)?;
@@ -61,8 +88,10 @@ fn parse_within(path: &Path, bytes: &Arc<Vec<u8>>, budget: &MemoryBudget) -> Res
     let bounds = keep_placeable(&mut drawn, &tree, &mut log);
     let Some(bounds) = bounds else { return Err(no_triangles(path, &drawn, log)) };
     let drafts = materials::read(&doc, &mut drawn, &mut log)?;
-    let needed = materials::needed_images(&drafts);
-    let pictures = images::fetch(&doc, &mut fetcher);
+    let (needed, pictures) = match wanted {
+        Pictures::Read => (materials::needed_images(&drafts), images::fetch(&doc, &mut fetcher)),
+        Pictures::Skip => Default::default(),
+    };
     let (images, decoded) = images::read(&doc, &buffers, &pictures, budget, &needed)?;
     let materials = materials::finish(drafts, &decoded, &drawn, &mut log)?;
     if doc.root.get("animations").is_some() {

@@ -60,7 +60,7 @@ pub use file::SceneFile;
 pub use geometry::{Geometry, SurfaceTriangle};
 pub(crate) use instancing::GPU_INSTANCING;
 pub use limits::{LoadLimits, SceneWarning};
-pub use load::{load, parse};
+pub use load::{load, load_without_pictures, parse};
 pub use materials::BLEND_CUTOFF;
 pub use names::{Selection, names};
 pub(crate) use names::{each_once, first_of, label_of};

@@ -4,6 +4,7 @@
 //! all nodes below it. What has no name of its own has an index in its file: `material:3`, `node:12`, `mesh:0`.
 
 use super::Scene;
+use serde_json::Value;
 use std::borrow::Borrow;
 use std::collections::BTreeSet;
 
@@ -19,9 +20,10 @@ pub struct Selection {
 impl Selection {
     /// What a text names in a scene.
     pub fn new(scene: &Scene, text: &str) -> Self {
-        let index = |list: &str| text.strip_prefix(list)?.strip_prefix(':')?.parse::<usize>().ok();
-        let [material, node, mesh] = ["material", "node", "mesh"].map(index);
-        let is_index = material.or(node).or(mesh).is_some();
+        let index = named_index(text);
+        let of_kind = |kind: &str| index.filter(|of| of.0 == kind).map(|of| of.1);
+        let [material, node, mesh] = KINDS.map(of_kind);
+        let is_index = index.is_some();
         let is_named = |name: &Option<String>| !is_index && name.as_ref().is_some_and(|name| matches(text, name));
         let mut is_below = Vec::with_capacity(scene.nodes.len());
         for one in &scene.nodes {
@@ -60,6 +62,39 @@ impl Selection {
     pub fn is_empty(&self) -> bool {
         self.materials.is_empty() && self.instances.is_empty()
     }
+}
+
+/// What has an index of its own.
+const KINDS: [&str; 3] = ["material", "node", "mesh"];
+
+/// The kind and the index that a text names, if it is one: `node:12`.
+pub(super) fn named_index(text: &str) -> Option<(&'static str, usize)> {
+    let (kind, index) = text.split_once(':')?;
+    let kind = KINDS.into_iter().find(|known| *known == kind)?;
+    Some((kind, index.parse().ok()?))
+}
+
+/// A list of the scene's file; empty where the scene was made without one.
+fn list_in_file<'a>(scene: &'a Scene, kind: &str) -> &'a [Value] {
+    let list = if kind == "mesh" { "meshes".to_owned() } else { format!("{kind}s") };
+    let json = scene.file.as_ref().and_then(|file| file.json().get(list));
+    json.and_then(Value::as_array).map_or(&[], Vec::as_slice)
+}
+
+/// How many materials, nodes or meshes there are in the file, drawn or not.
+pub(super) fn count_in_file(scene: &Scene, kind: &str) -> usize {
+    let drawn = match kind {
+        "node" => scene.nodes.iter().map(|node| node.gltf + 1).max(),
+        "mesh" => scene.meshes.iter().map(|mesh| mesh.gltf.0 + 1).max(),
+        _ => scene.materials.iter().filter_map(|material| Some(material.gltf? + 1)).max(),
+    };
+    list_in_file(scene, kind).len().max(drawn.unwrap_or(0))
+}
+
+/// Whether the file has something of this name, drawn or not.
+pub(super) fn is_in_file(scene: &Scene, text: &str) -> bool {
+    let name = |value: &Value| value.get("name").and_then(Value::as_str).is_some_and(|name| matches(text, name));
+    KINDS.into_iter().any(|kind| list_in_file(scene, kind).iter().any(name))
 }
 
 /// What a message calls instances, and a text that selects them and nothing else; of what cannot be told apart, a text

@@ -38,7 +38,9 @@ pub(super) fn read(reader: Reader, log: &mut WarningLog) -> Result<NodeTree, Loa
 fn roots(doc: &Document, file: &[document::JsonNode]) -> Result<Vec<usize>, LoadError> {
     let scene = doc.root.get("scene").and_then(serde_json::Value::as_u64).unwrap_or(0) as usize;
     if doc.count::<document::JsonSceneRoots>() > 0 {
-        return Ok(doc.get::<document::JsonSceneRoots>(scene)?.nodes.unwrap_or_default());
+        let roots = doc.get::<document::JsonSceneRoots>(scene);
+        let roots = roots.map_err(|error| error.used_as("default scene", "the file"))?;
+        return Ok(roots.nodes.unwrap_or_default());
     }
     let mut is_child = vec![false; file.len()];
     for child in file.iter().flat_map(|node| node.children.iter().flatten()) {
@@ -111,7 +113,7 @@ fn walk(
 const SECOND_PARENT: &str = "it has more than one parent, and is drawn under the first only";
 
 fn missing(tree: &NodeTree, index: usize, parent: Option<usize>) -> LoadError {
-    let place = parent.map_or_else(|| "scenes".to_owned(), place::<document::JsonNode>);
+    let place = parent.map_or_else(|| "the scene that is drawn".to_owned(), place::<document::JsonNode>);
     LoadError::structure(place, format!("it has the node {index}, and there are only {}", tree.file.len()))
 }
 

@@ -1,5 +1,6 @@
 //! What a user asks for objects by their names: to leave them out, to change their [`Role`].
 
+use super::names::{count_in_file, is_in_file, named_index};
 use super::{Alpha, Role, Scene, Selection, first_of, is_density, names};
 
 /// What is asked for objects, by names as [`Selection`] reads them. Wishes come before those in the file's `extras`
@@ -55,6 +56,26 @@ pub enum ObjectError {
         name: String,
         /// What there is, as far as fits.
         known: String,
+    },
+    /// The index is beyond the end of its list.
+    #[error("the scene has no {name} to {}; it has {}", wish.verb(), indices(kind, *count))]
+    NoIndex {
+        /// What was wanted.
+        wish: Wish,
+        /// The name that was given: `node:99`.
+        name: String,
+        /// What it is an index of: `node`, `mesh`, `material`.
+        kind: &'static str,
+        /// How many the file has.
+        count: usize,
+    },
+    /// The file has it, and it draws nothing.
+    #[error("nothing is drawn of {name:?}, so there is nothing to {}", wish.verb())]
+    DrawsNothing {
+        /// What was wanted.
+        wish: Wish,
+        /// The name that was given.
+        name: String,
     },
     /// All that the name names is left out.
     #[error(
@@ -157,8 +178,35 @@ fn change(scene: &mut Scene, wish: Wish, name: &str, to: impl Fn(&mut Role)) -> 
 fn select(scene: &Scene, wish: Wish, name: &str) -> Result<Selection, ObjectError> {
     let selection = Selection::new(scene, name);
     match selection.is_empty() {
-        true => Err(ObjectError::NothingNamed { wish, name: name.to_owned(), known: known(scene) }),
+        true => Err(not_found(scene, wish, name.to_owned())),
         false => Ok(selection),
+    }
+}
+
+/// Why a name selects nothing.
+fn not_found(scene: &Scene, wish: Wish, name: String) -> ObjectError {
+    let index = named_index(&name);
+    let beyond = index.map(|(kind, index)| (kind, index, count_in_file(scene, kind)));
+    match beyond {
+        Some((kind, index, count)) if index >= count => ObjectError::NoIndex { wish, name, kind, count },
+        Some(_) => ObjectError::DrawsNothing { wish, name },
+        None if is_in_file(scene, &name) => ObjectError::DrawsNothing { wish, name },
+        None => ObjectError::NothingNamed { wish, name, known: known(scene) },
+    }
+}
+
+/// `185 nodes, node:0 to node:184`.
+fn indices(kind: &str, count: usize) -> String {
+    let kinds = match (kind, count) {
+        (_, 1) => kind,
+        ("node", _) => "nodes",
+        ("mesh", _) => "meshes",
+        _ => "materials",
+    };
+    match count {
+        0 => format!("no {kinds}"),
+        1 => format!("1 {kinds}, {kind}:0"),
+        _ => format!("{count} {kinds}, {kind}:0 to {kind}:{}", count - 1),
     }
 }
 
@@ -254,6 +302,8 @@ mod tests {
             (wishes("", "", &[("steel", 3.0), ("steel", 4.0)]), "3 and 4 texels"),
             (wishes("", "", &[("steel", -1.0)]), "above zero"),
             (wishes("", "", &[("wood", 1.0)]), "\"wood\" to give a density; it has materials steel"),
+            (wishes("node:99", "", &[]), "no node:99 to leave out; it has 3 nodes, node:0 to node:2"),
+            (wishes("", "mesh:1", &[]), "no mesh:1 to free of shadows on it; it has 1 mesh, mesh:0"),
         ] {
             let message = wishes.apply_to(&mut three()).unwrap_err().to_string();
             assert!(message.contains(expected) && !message.contains('\n'), "{message}");

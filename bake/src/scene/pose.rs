@@ -9,7 +9,7 @@ use super::{
     LoadError,
     accessors::Reader,
     document::{self, JsonPrimitive},
-    nodes::NodeTree,
+    nodes::{NodeTree, label},
 };
 use glam::{DMat3, DMat4, Vec3};
 
@@ -52,7 +52,8 @@ impl Pose {
         let weights = file.weights.clone().or_else(|| mesh.weights.clone()).unwrap_or_default();
         let object_from_world = drawn.world_from_node.inverse();
         let object_from_bind = match file.skin {
-            Some(skin) => joint_matrices(reader, skin, skeletons.world_from_file_nodes(tree))?
+            Some(skin) => joint_matrices(reader, skin, skeletons.world_from_file_nodes(tree))
+                .map_err(|error| error.used_as("skin", label(file, drawn.gltf)))?
                 .into_iter()
                 .map(|world_from_bind| object_from_world * world_from_bind)
                 .collect(),
@@ -123,7 +124,9 @@ fn joint_matrices(reader: Reader, skin: usize, world_from_file_node: &[DMat4]) -
     let place = document::place::<document::JsonSkin>(skin);
     let skin: document::JsonSkin = reader.doc.get(skin)?;
     let inverse_bind = match skin.inverse_bind_matrices {
-        Some(accessor) => reader.floats::<16>(accessor)?,
+        Some(accessor) => {
+            reader.floats::<16>(accessor).map_err(|error| error.used_as("inverseBindMatrices", &place))?
+        }
         None => Vec::new(),
     };
     reader.budget.take(skin.joints.len() as u64, size_of::<DMat4>() as u64, || place.clone())?;

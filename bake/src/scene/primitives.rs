@@ -52,7 +52,8 @@ pub(super) fn read(reader: Reader, tree: &NodeTree, log: &mut WarningLog) -> Res
                 if file.skin.is_some() {
                     log.warn("its skin was baked in its rest pose", label(file, placed.gltf));
                 }
-                let mesh: document::JsonMesh = reader.doc.get(mesh_index)?;
+                let of_node = |error: LoadError| error.used_as("mesh", label(file, placed.gltf));
+                let mesh: document::JsonMesh = reader.doc.get(mesh_index).map_err(of_node)?;
                 let pose = match is_posed {
                     true => Pose::of_node(reader, tree, &mut skeletons, node, &mesh)?,
                     false => Pose::of_mesh(&mesh),
@@ -127,14 +128,16 @@ impl PrimitiveReader<'_> {
             log.warn("it has no positions; left out", self.place);
             return Ok(None);
         };
-        let mut positions: Vec<Vec3> = self.reader.floats(position)?.into_iter().map(Vec3::from_array).collect();
+        let read = self.reader.floats(position).map_err(|error| error.used_as("POSITION", self.place))?;
+        let mut positions: Vec<Vec3> = read.into_iter().map(Vec3::from_array).collect();
         let indices = self.indices(topology, positions.len())?;
         let mut normals =
             self.optional_attribute("NORMAL", positions.len(), log, |r, at| Ok(vectors(r.floats::<3>(at)?)))?;
         if self.primitive.targets.is_some() {
             log.warn("its morph targets were baked at their default weights", self.place);
         }
-        self.pose.apply(self.reader, self.primitive, &mut positions, normals.as_mut())?;
+        let posed = self.pose.apply(self.reader, self.primitive, &mut positions, normals.as_mut());
+        posed.map_err(|error| error.used_as("pose", self.place))?;
         let indices = triangles::clean(&indices, &positions, dropped);
         if indices.is_empty() {
             return Ok(None);
@@ -152,7 +155,10 @@ impl PrimitiveReader<'_> {
 
     fn indices(&self, topology: Topology, vertex_count: usize) -> Result<Vec<u32>, LoadError> {
         let order: Vec<u32> = match self.primitive.indices {
-            Some(accessor) => self.reader.integers::<1>(accessor)?.into_iter().flatten().collect(),
+            Some(accessor) => {
+                let read = self.reader.integers::<1>(accessor).map_err(|error| error.used_as("indices", self.place))?;
+                read.into_iter().flatten().collect()
+            }
             None => (0..vertex_count as u32).collect(),
         };
         triangles::check_range(&order, vertex_count, self.place)?;
@@ -197,7 +203,7 @@ impl PrimitiveReader<'_> {
         for (set, name) in TEXCOORDS.iter().enumerate() {
             let Some(&accessor) = self.primitive.attributes.get(*name) else { continue };
             let values = match self.reader.floats::<2>(accessor) {
-                Err(error) if wanted == Some(set) => return Err(error),
+                Err(error) if wanted == Some(set) => return Err(error.used_as(name, self.place)),
                 read => self.checked(name, count, log, read)?,
             };
             sets.resize(set, None);

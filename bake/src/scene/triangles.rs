@@ -8,6 +8,7 @@
 //! would be noise.
 
 use super::{Dropped, LoadError};
+use crate::words::either;
 use glam::{DVec3, Vec3};
 
 /// Height over longest edge at and below which a triangle counts as a line.
@@ -54,7 +55,8 @@ pub(super) fn check_range(indices: &[u32], vertex_count: usize, place: &str) -> 
         None => Ok(()),
         Some(at) => {
             let index = indices.get(at).copied().unwrap_or_default();
-            let problem = format!("its index {at} is {index}, and it has only {vertex_count} vertices");
+            let vertices = either(vertex_count as u64, "vertex", "vertices");
+            let problem = format!("its index {at} is {index}, and it has only {vertex_count} {vertices}");
             Err(LoadError::structure(place, problem))
         }
     }

@@ -45,7 +45,7 @@ pub struct DayRequest {
     /// Degrees that the scene's north is turned from -Z towards +X (clockwise seen from above).
     pub north_deg: f64,
     /// Start and end of the path in minutes of local clock time, each in 0..=1440. An end at or before the start is on
-    /// the next day. `None`: from sunrise to sunset.
+    /// the next day, so equal times are a whole day. `None`: from sunrise to sunset.
     pub window: Option<[f64; 2]>,
 }
 

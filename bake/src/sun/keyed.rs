@@ -41,6 +41,9 @@ pub enum KeyedError {
         /// What it must be.
         bound: &'static str,
     },
+    /// North is turned by an angle that is not finite.
+    #[error("north turned by {0} degrees is no direction: give a finite angle")]
+    North(f64),
     /// The light never rises above the horizon.
     #[error("the path stays below the horizon (+Y is up), so nothing would be lit: directions must point to the light")]
     BelowHorizon,
@@ -89,7 +92,7 @@ pub fn parse_keyed(json: &str, north_deg: f64) -> Result<SunPath, KeyedError> {
         return Err(KeyedError::Size { name: "duration_min", value, bound: "above 0" });
     }
     if !north_deg.is_finite() {
-        return Err(KeyedError::Size { name: "north", value: north_deg, bound: "that is finite" });
+        return Err(KeyedError::North(north_deg));
     }
     let arcs = arcs(&directions(&file.keys, &Compass::new(north_deg))?, &times)?;
     let swept_rad: f64 = arcs.iter().map(|arc| arc.hour_angle_rad[1]).sum();

@@ -1,5 +1,7 @@
 //! Common to the path files of suns and of lamps: a list of keys, and the path time of each key.
 
+use crate::words::counted;
+
 /// Most keys that a path may have: each pair costs a query of the scene for every texel.
 pub const MAX_KEYS: usize = 1000;
 
@@ -13,7 +15,7 @@ pub enum KeyError {
     #[error("the path file is not understood: {0}")]
     Json(String),
     /// Too few or too many keys.
-    #[error("the path has {0} keys: give 2 to {MAX_KEYS}")]
+    #[error("the path has {}: give 2 to {MAX_KEYS}", counted(*.0 as u64, "key"))]
     Count(usize),
     /// A key is invalid.
     #[error("key {index} of the path (counted from 0) {problem}")]

@@ -74,5 +74,7 @@ fn a_window_may_cross_midnight() {
     assert_eq!(minutes(&manifest), 240.0);
     assert_eq!(manifest["path"]["local"], json!(["2026-06-21T22:00:00", "2026-06-22T02:00:00"]));
     let manifest = day(&["--window", "23:00-06:00"]);
+    let whole = day(&["--window", "08:00-08:00"]);
+    assert_eq!(minutes(&whole), 1440.0, "equal times are a whole day");
     assert_eq!(minutes(&manifest), 420.0, "dark until the next day's sunrise, and no failure");
 }

@@ -107,13 +107,16 @@ fn missing_files_are_named() {
     let desk = Desk::new();
     desk.write("gone.gltf", &with_buffer("gone.bin"));
     desk.write("keys.json", b"[");
-    let cases: [(&[&str], i32, &[&str]); 6] = [
+    let cases: [(&[&str], i32, &[&str]); 9] = [
         (&["bake", "nowhere.glb", "-o", "out/set"], 2, &["cannot read nowhere.glb", "check the path"]),
         (&["bake", "out", "-o", "out/set"], 2, &["cannot read out", "it is a folder"]),
         (&["bake", "gone.gltf", "-o", "out/set"], 2, &["gone.bin", "put it back"]),
         (&["bake", "floor.glb", "-o", "out/set", "--path", "no.json"], 2, &["no.json", "--path"]),
-        (&["bake", "floor.glb", "-o", "out/set", "--path", "keys.json"], 3, &["path"]),
-        (&["inspect", "nowhere"], 2, &["nowhere", "sunbake bake"]),
+        (&["bake", "floor.glb", "-o", "out/set", "--path", "keys.json"], 3, &["keys.json: ", "line 1 column 1"]),
+        (&["inspect", "nowhere"], 2, &["nowhere is not there", "check its name"]),
+        (&["inspect", "nowhere.glb"], 2, &["nowhere.glb is not there", "check its name"]),
+        (&["inspect", "out"], 2, &["out holds no sunbake.json", "check its name", "sunbake bake"]),
+        (&["texels", "floor.glb"], 2, &["floor.glb is a file", "folder"]),
     ];
     for (arguments, code, words) in cases {
         desk.run(arguments).fails(&arguments.join(" "), code, words);
@@ -153,7 +156,7 @@ fn invalid_options_are_refused() {
         (&["--density", "node:0=1e7"], 3, &["for meshes[0]", "smaller --density", "larger --max-memory"]),
         (&["--leave-out", "ghost"], 1, &["\"ghost\" to leave out", "another --leave-out"]),
         (&["--no-cast", "ghost"], 1, &["\"ghost\" to free of its shadow", "another --no-cast"]),
-        (&["--no-receive", "node:9"], 1, &["node:9", "another --no-receive"]),
+        (&["--no-receive", "node:9"], 1, &["node:9", "it has 1 node, node:0", "another --no-receive"]),
         (&["--density", "floor"], 1, &["`floor` is no name with a positive number", "NAME=X"]),
         (&["--leave-out", "node:0", "--no-cast", "node:0"], 1, &["is left out", "take one of the two wishes back"]),
         (&["--no-receive", "node:0", "--density", "node:0=4"], 1, &["no texels to give a density"]),
@@ -175,14 +178,16 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_scene_is_read() {
     let cases: [(&str, &[&str], &[&str]); 6] = [
         ("out/letter.txt/set", &[], &["cannot write in out/letter.txt", "-o"]),
         ("out/letter.txt/a/b", &[], &["cannot write in out/letter.txt/a", "-o"]),
-        ("out/letter.txt", &[], &["out/letter.txt exists", "-o", "--force"]),
+        ("out/letter.txt", &[], &["out/letter.txt exists", "is not a baked set", "another folder with -o"]),
         ("out/letter.txt", &["--force"], &["is not a baked set", "-o"]),
-        ("out", &[], &["out exists", "-o", "--force"]),
+        ("out", &[], &["out exists", "is not a baked set", "another folder with -o"]),
         ("out", &["--force"], &["is not a baked set", "never replaced"]),
     ];
     for (target, options, words) in cases {
         let arguments = [&["bake", "nowhere.glb", "-o", target], options].concat();
-        desk.run(&arguments).fails(target, 2, words);
+        let run = desk.run(&arguments);
+        run.fails(target, 2, words);
+        assert!(!run.stderr.contains("--force"), "it would not help: {}", run.stderr);
         assert_eq!(desk.left(), ["letter.txt"]);
     }
     desk.run(&["bake", "nowhere.glb", "-o", "out/new/deep/set"]).fails("no scene", 2, &["nowhere.glb"]);

@@ -75,7 +75,7 @@ fn a_plan_says_what_a_lamp_adds() {
     let desk = desk();
     let plan = |more: &[&str]| desk.run(&[&["bake", "floor.glb", "--explain"], more].concat()).ok();
     let with = plan(&["--lamp=lamp.json", "--json"]).json();
-    assert!(effect(&with, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("2 straight segment(s)")));
+    assert!(effect(&with, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("2 straight segments")));
     let without = plan(&["--json"]).json();
     assert!(effect(&without, "lamp-intervals")["why"].as_str().is_some_and(|why| why.contains("--lamp")));
     assert!(plan(&["--path=lamp.json"]).stdout.contains("3 keys"));
@@ -90,11 +90,11 @@ fn invalid_lamps_are_refused() {
     desk.write("mixed.json", br#"{"keys": [{"position": [0, 1, 0]}, {"direction": [0, 1, 0]}]}"#);
     desk.write("list.json", br#"{"positions": [[0, 1, 0], [1, 1, 0]]}"#);
     let run = |more: &[&str]| desk.run(&[&EXACT[..], more].concat());
-    run(&["--path=one.json"]).fails("one key", 3, &["1 keys: give 2 to"]);
-    run(&["--lamp=still.json"]).fails("no motion", 3, &["keys 0 and 1", "does not move"]);
-    run(&["--path=mixed.json"]).fails("mixed", 3, &["key 1", "give every key a 'position'"]);
+    run(&["--path=one.json"]).fails("one key", 3, &["one.json: ", "1 key: give 2 to"]);
+    run(&["--lamp=still.json"]).fails("no motion", 3, &["still.json: ", "keys 0 and 1", "does not move"]);
+    run(&["--path=mixed.json"]).fails("mixed", 3, &["mixed.json: ", "key 1", "give every key a 'position'"]);
     run(&["--path=list.json"]).fails("a list", 3, &["'position' in every key"]);
-    run(&["--lamp=sun.json"]).fails("a sun", 3, &["key 0", "'position'"]);
+    run(&["--lamp=sun.json"]).fails("a sun", 3, &["sun.json: ", "key 0", "'position'"]);
     run(&["--lamp=none.json"]).fails("no file", 2, &["none.json", "--lamp"]);
     run(&["--path=lamp.json", "--lamp=lamp.json"]).fails("two lamps", 1, &["both bring a lamp", "--lamp or --path"]);
     run(&["--lamp=lamp.json", "--engine=bisect:64"]).fails("bisection", 1, &["bisect:64", "rays:N"]);

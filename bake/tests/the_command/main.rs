@@ -12,3 +12,4 @@ mod errors_are_one_line;
 mod help_streams_and_exit_codes;
 mod lamps_are_baked;
 mod lanes_and_loss_maps_are_written;
+mod odd_scenes_are_told_of;

@@ -1,6 +1,7 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
 use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
+use super::no_effect;
 use clap::ValueEnum;
 use std::path::Path;
 use sunbake::console::{Command, Failure, ObjectArgs, SunArgs, tell, warn_all};
@@ -138,19 +139,7 @@ pub fn stage(
     output: OutputChoice,
 ) -> Result<Stage, Failure> {
     let is_baked = look.technique == TechniqueChoice::Baked;
-    let is_volumes = matches!(look.technique, TechniqueChoice::Volumes(_));
-    if output == OutputChoice::Volumes && !is_volumes {
-        return Err(Failure::usage(
-            "there are no volumes to show: draw --technique volumes, or leave --output volumes out",
-        ));
-    }
-    if output == OutputChoice::Volumes && look.light == LightChoice::Sky {
-        return Err(Failure::usage("the sky has no shadow volumes: leave --light sky out, or --output volumes"));
-    }
-    if look.sun_samples > 1 && !is_volumes {
-        return Err(Failure::usage("--sun-samples is for --technique volumes; of truth give truth:soft:N"));
-    }
-    check_map_options(look)?;
+    no_effect::check(look, output)?;
     if !from.exists() {
         return Err(Failure::io(format!("{} is not there: check its name", from.display())));
     }
@@ -167,6 +156,7 @@ pub fn stage(
                 from.display()
             )));
         }
+        no_effect::check_filter(look, output, false)?;
         return plain_stage(from, sun, objects, output);
     }
     if sun.is_given() || objects.is_given() {
@@ -178,6 +168,7 @@ pub fn stage(
     // Nothing that only looks need is read for a picture of visibility.
     let read = if output == OutputChoice::Visibility { Stage::read_without_looks } else { Stage::read };
     let stage = warned(read(from)?);
+    no_effect::check_filter(look, output, stage.lamp.is_some())?;
     let stage = match look.technique {
         TechniqueChoice::Baked => stage,
         // A lamp's shadows are those of the bake.
@@ -204,25 +195,6 @@ pub fn stage(
         LightChoice::Sun => stage.without_lamp(),
         _ => stage,
     })
-}
-
-/// Options of shadow maps are for shadow maps.
-fn check_map_options(look: &LookArgs) -> Result<(), Failure> {
-    let variant = match look.technique {
-        TechniqueChoice::Map(variant) => Some(variant),
-        _ => None,
-    };
-    let has_map = variant.is_some_and(|variant| variant != Variant::Planar);
-    for (is_given, option) in [(look.map_size.is_some(), "--map-size"), (look.bias.is_some(), "--bias")] {
-        if is_given && !has_map {
-            let text = format!("{option} is for --technique map and its variants that have one: leave it out");
-            return Err(Failure::usage(text));
-        }
-    }
-    if look.cascades.is_some() && variant != Some(Variant::Cascades) {
-        return Err(Failure::usage("--cascades is for --technique map:cascades: leave it out"));
-    }
-    Ok(())
 }
 
 /// A scene that is not baked, under a sun.

@@ -6,6 +6,7 @@ use super::files::{displayed, displayed_visibility, in_words, make_folder, write
 use serde_json::json;
 use std::time::Instant;
 use sunbake::console::{Failure, ProgressLine, print, print_json, set_threads};
+use sunbake::words::counted;
 use sunbake_runtime::light::clock_label;
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
 use sunbake_runtime::{Raster, Shot};
@@ -70,9 +71,9 @@ pub fn run(args: &FramesArgs) -> Result<(), Failure> {
     } else if !args.printing.quiet {
         let folder = args.output_folder.display();
         print(&format!(
-            "{} pictures in {seconds:.1} s on {renderer}, {}\n  {folder}/contact.png   all of them small\n  \
+            "{} in {seconds:.1} s on {renderer}, {}\n  {folder}/contact.png   all of them small\n  \
              {folder}/day.png       an animated PNG\n",
-            args.count,
+            counted(args.count.into(), "picture"),
             in_words(samples)
         ))?;
     }

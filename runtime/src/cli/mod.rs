@@ -8,6 +8,7 @@ mod files;
 mod frame;
 mod frames;
 mod no_display;
+mod no_effect;
 mod place;
 mod values;
 mod when;

@@ -104,6 +104,8 @@ pub enum Reason {
     Possible,
     /// N things need it: images, batches, layers, suns, maps.
     Count(usize),
+    /// N pages were baked, and one texel more stands for what nothing shades.
+    PagesAndOpenTexel(usize),
     /// The picture shows how much of the light is seen, and no colours.
     VisibilityPicture,
     /// What it depends on is not read at all.

@@ -14,6 +14,7 @@ use crate::shot::Shot;
 use crate::stage::Stage;
 use crate::volumes::{CasterCounts, Mode};
 use glam::Vec3;
+use sunbake::words::counted;
 
 /// Shadow volumes on the GPU.
 pub struct Volumes<'g> {
@@ -91,15 +92,15 @@ impl Technique for Volumes<'_> {
         let casters = self.renderer.caster_counts();
         let mut lines = vec![
             format!(
-                "casters: {} triangles in {} casters; {} solid bodies ({} of them inside out), {} open ones; {} open \
-                 edges, {} edges of three triangles or more",
-                casters.triangles,
-                casters.casters,
+                "casters: {} in {}; {} solid bodies ({} of them inside out), {} open ones; {}, {} of three or more \
+                 triangles",
+                counted(casters.triangles as u64, "triangle"),
+                counted(casters.casters as u64, "caster"),
                 casters.solid_bodies + casters.inside_out_bodies,
                 casters.inside_out_bodies,
                 casters.open_bodies,
-                casters.open_edges,
-                casters.nonmanifold_edges
+                counted(casters.open_edges as u64, "open edge"),
+                counted(casters.nonmanifold_edges as u64, "edge")
             ),
             format!(
                 "solid bodies extrude silhouettes of what faces the light, open ones of every triangle, and {} \
@@ -109,24 +110,24 @@ impl Technique for Volumes<'_> {
         ];
         if casters.alpha_masked_triangles > 0 {
             lines.push(format!(
-                "{} triangles have alpha masks: volumes do not see them, and the whole triangles cast",
-                casters.alpha_masked_triangles
+                "{} with an alpha mask: volumes do not see the mask, and the whole triangles cast",
+                counted(casters.alpha_masked_triangles as u64, "triangle")
             ));
         }
         for light in &self.renderer.report().lights {
             let plan = &light.plan;
             lines.push(format!(
-                "{}: of {} casters {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted in \
-                 front of the surface, {} behind it ({} without caps); {} triangles in {}",
+                "{}: of {}, {} cast nothing, {} miss the view and {} shade nothing in it; {} are counted in front of \
+                 the surface, {} behind it ({} without caps); {} in {}",
                 light.light,
-                plan.casters,
+                counted(plan.casters as u64, "caster"),
                 plan.casting_nothing,
                 plan.out_of_view,
                 plan.shading_nothing,
                 plan.z_pass,
                 plan.z_fail,
                 plan.without_caps,
-                light.triangles,
+                counted(light.triangles as u64, "triangle"),
                 if light.runs == 1 {
                     "one run".into()
                 } else {
@@ -135,9 +136,10 @@ impl Technique for Volumes<'_> {
             ));
             if plan.replaced > 0 && self.settings.mode == Mode::ZPass {
                 lines.push(format!(
-                    "{}: z-pass would be wrong for {} casters (the eye may be in their volumes, or a cap shows): they \
-                     are counted behind the surface instead",
-                    light.light, plan.replaced
+                    "{}: z-pass would be wrong for {} (the eye may be in a volume, or a cap shows): counted behind \
+                     the surface instead",
+                    light.light,
+                    counted(plan.replaced as u64, "caster")
                 ));
             }
         }

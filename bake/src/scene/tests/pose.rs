@@ -43,7 +43,8 @@ fn a_skinned_mesh_stands_where_its_joints_are_whatever_its_node_says() {
 fn joints_that_do_not_exist_are_refused_and_missing_weights_leave_the_mesh_under_its_node() {
     let mut b = skinned(true);
     b.root["skins"][0]["joints"] = json!([1, 77]);
-    assert!(b.refusal().contains("skins[0]: its joint 77 is not a node"), "{}", b.refusal());
+    assert!(b.refusal().contains("skins[0] (skin of nodes["), "{}", b.refusal());
+    assert!(b.refusal().contains(": its joint 77 is not a node"), "{}", b.refusal());
     let mut b = skinned(true);
     b.root["meshes"][0]["primitives"][0]["attributes"].as_object_mut().expect("attributes").remove("WEIGHTS_0");
     assert_eq!(b.scene().meshes[0].positions[1], Vec3::X);

@@ -32,7 +32,10 @@ fn files_that_are_no_gltf_are_told_apart() {
         (b"{\"asset\": {\"version\": \"1.0\"}}", "is glTF 1.0, and only glTF 2"),
         (b"{\"asset\": {\"version\": \"2.0\", \"minVersion\": \"2.9\"}}", "is glTF 2.9"),
         (b"{\n \"nodes\": [1,]}", "its JSON is wrong at line 2, column 14: trailing comma"),
-        (b"{\"asset\": {\"version\": \"2.0\"}}", "draws no triangles: no node of its default scene draws a mesh"),
+        (
+            b"{\"asset\": {\"version\": \"2.0\"}}",
+            "draws no triangles, so there is nothing to bake or to shade: no node of its default scene draws a mesh",
+        ),
     ] {
         let message = text_of("bad.glb", bytes);
         assert!(message.contains(expected), "{message}\n  lacks: {expected}");
@@ -53,25 +56,42 @@ fn a_missing_file_and_a_folder_are_read_errors() {
 /// What each change to a good scene must be refused with.
 fn broken_scenes() -> Vec<(&'static str, Value, &'static str)> {
     vec![
-        ("/nodes/0/mesh", json!(5), "meshes[5]: it is referred to, but there are only 1"),
+        ("/nodes/0/mesh", json!(5), "meshes[5] (mesh of nodes[0]): it is referred to, but there are only 1"),
         ("/nodes/0/children", json!([7]), "nodes[0]: it has the node 7, and there are only 1"),
         ("/nodes/0/children", json!([0]), "nodes[0] is its own ancestor"),
         ("/nodes/0/matrix", json!([1, 2]), "nodes[0]: invalid length 2"),
-        ("/scene", json!(3), "scenes[3]"),
-        ("/accessors/0/count", json!(4), "accessors[0]: its 4 elements need 48 bytes of bufferViews[0], which has 36"),
+        ("/scene", json!(3), "scenes[3] (default scene of the file): it is referred to, but there are only 1"),
+        (
+            "/accessors/0/count",
+            json!(4),
+            "(POSITION of meshes[0] primitive 0): its 4 elements need 48 bytes of bufferViews[0], which has 36",
+        ),
         ("/accessors/0/count", json!(u64::MAX), "accessors[0]"),
         ("/accessors/0/byteOffset", json!(u64::MAX), "accessors[0]"),
-        ("/accessors/0/componentType", json!(5130), "accessors[0]: unknown component type 5130"),
-        ("/accessors/0/type", json!("VEC9"), "accessors[0]: unknown type VEC9"),
-        ("/accessors/0/type", json!("VEC2"), "accessors[0]: type VEC2 where 3 numbers an element are needed"),
+        ("/accessors/0/componentType", json!(5130), ": unknown component type 5130"),
+        ("/accessors/0/type", json!("VEC9"), ": unknown type VEC9"),
+        ("/accessors/0/type", json!("VEC2"), ": type VEC2 where 3 numbers an element are needed"),
         ("/accessors/1/componentType", json!(5126), "accessors[1]"),
-        ("/bufferViews/0/byteLength", json!(9000), "bufferViews[0]: it ends at byte 9008 of buffers[0], which has 44"),
+        (
+            "/bufferViews/0/byteLength",
+            json!(9000),
+            "bufferViews[0] (POSITION of meshes[0] primitive 0): it ends at byte 9008 of buffers[0], which has 44",
+        ),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "bufferViews[0]"),
         ("/bufferViews/0/byteStride", json!(u64::MAX), "accessors[0]"),
-        ("/bufferViews/0/buffer", json!(4), "bufferViews[0]: it lies in buffers[4], which does not exist"),
-        ("/meshes/0/primitives/0/indices", json!(9), "accessors[9]: it is referred to"),
+        ("/bufferViews/0/buffer", json!(4), ": it lies in buffers[4], which does not exist"),
+        (
+            "/meshes/0/primitives/0/indices",
+            json!(9),
+            "accessors[9] (indices of meshes[0] primitive 0): it is referred to",
+        ),
         ("/meshes/0/primitives/0/attributes", json!({}), "it has no positions"),
         ("/meshes/0/primitives/0/mode", json!(77), "draws no triangles"),
+        (
+            "/meshes/0/primitives/0/mode",
+            json!(1),
+            "nothing to bake or to shade: meshes[0] primitive 0: points and lines",
+        ),
     ]
 }
 
@@ -266,7 +286,7 @@ fn files_beside_the_scene_are_read_whatever_their_names_are_like() {
     let base64 = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
     load_with_uri(&format!("data:application/gltf-buffer;base64,{base64}"), &[]).expect("base64");
     let wrong = load_with_uri("data:;base64,AA*A", &[]).expect_err("not base64").to_string();
-    assert!(wrong.contains("buffers[0]: its data URI has a wrong base64 character at 2"), "{wrong}");
+    assert!(wrong.contains(": its data URI has a wrong base64 character at 2"), "{wrong}");
 }
 
 #[test]
@@ -299,7 +319,7 @@ fn missing_and_short_buffers_are_named() {
     b.root["buffers"] = json!([{ "byteLength": 36 }]);
     let short = Builder::glb_of(b.root.to_string().as_bytes(), &b.binary()[..20]);
     let message = text_of("short.glb", &short);
-    assert!(message.contains("bufferViews[0]: it ends at byte 36 of buffers[0], which has 20"), "{message}");
+    assert!(message.contains(": it ends at byte 36 of buffers[0], which has 20"), "{message}");
 }
 
 #[test]

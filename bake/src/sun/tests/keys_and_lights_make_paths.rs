@@ -36,7 +36,7 @@ fn keys_without_times_are_evenly_spaced_and_last_as_the_sun_would() {
 fn bad_files_say_what_and_where() {
     let up = r#"{"direction": [0,1,0]}"#;
     for (keys, expected) in [
-        (r#"{"t": 0, "direction": [1,0,0]}"#.to_owned(), "1 keys: give 2 to 1000"),
+        (r#"{"t": 0, "direction": [1,0,0]}"#.to_owned(), "1 key: give 2 to 1000"),
         (format!("{up}, {up}"), "keys 0 and 1 of the path (counted from 0) point in the same direction"),
         (format!(r#"{up}, {{"direction": [0,-1,0]}}"#), "opposite directions"),
         (format!(r#"{up}, {{"direction": [0,0,0]}}"#), "key 1 of the path (counted from 0) has a direction without"),
@@ -72,7 +72,7 @@ fn bad_sizes_and_positions_are_refused_by_name() {
     }
     assert!(matches!(parse_keyed(r#"{"positions": []}"#, 0.0), Err(KeyedError::Positions(_))));
     assert!(matches!(parse_keyed("", 0.0), Err(KeyedError::Keys(KeyError::Json(_)))));
-    assert!(matches!(parse_keyed(&format!("{{{keys}}}"), f64::NAN), Err(KeyedError::Size { .. })));
+    assert!(matches!(parse_keyed(&format!("{{{keys}}}"), f64::NAN), Err(KeyedError::North(_))));
 }
 
 #[test]

@@ -33,6 +33,7 @@ pub fn run(args: &CompareArgs) -> Result<(), Failure> {
 
 fn settings(args: &CompareArgs) -> Result<CompareSettings, Failure> {
     let against = TechniqueSpec::named(&args.against).map_err(|error| Failure::usage(format!("--against: {error}")))?;
+    check_map_size(args, against)?;
     Ok(CompareSettings {
         source: source(args)?,
         techniques: args.techniques.clone(),
@@ -45,6 +46,18 @@ fn settings(args: &CompareArgs) -> Result<CompareSettings, Failure> {
         limits: args.fail_above.clone(),
         threads: args.threads,
     })
+}
+
+/// Refuses a size of shadow maps where none is drawn.
+fn check_map_size(args: &CompareArgs, against: TechniqueSpec) -> Result<(), Failure> {
+    let is_map = |name: &String| name.split(':').next() == Some("map");
+    let draws_maps = args.techniques.is_empty() || args.techniques.iter().any(is_map) || against.family() == "map";
+    match args.map_size {
+        Some(_) if !draws_maps => Err(Failure::usage(
+            "--map-size has no effect without shadow maps, and --techniques names none: leave it out, or add map",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// The set or the scene, with the options that are for it.
@@ -130,4 +143,26 @@ fn print_report(args: &CompareArgs, report: &Report) -> Result<(), Failure> {
     // A limit that was passed fails the command even if printing failed.
     let passed: Vec<String> = report.limits.iter().filter(|limit| !limit.is_kept()).map(LimitEntry::text).collect();
     if passed.is_empty() { printed } else { Err(Failure::limit(passed.join("; "))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::args;
+    use super::*;
+    use clap::Parser;
+
+    #[test]
+    fn a_size_of_maps_is_refused_where_no_map_is_drawn() {
+        let is_refused = |options: &str| {
+            let command = format!("sunplay compare set -o report --map-size 512 {options}");
+            let parsed =
+                args::Args::try_parse_from(command.split_whitespace()).unwrap_or_else(|error| panic!("{error}"));
+            let args::Command::Compare(args) = parsed.command else { unreachable!() };
+            let failure = settings(&args).err().map(|failure| failure.message).unwrap_or_default();
+            failure.contains("--map-size has no effect")
+        };
+        assert!(is_refused("--techniques baked,volumes"));
+        assert!(!is_refused("") && !is_refused("--techniques map:pcf4,baked"));
+        assert!(!is_refused("--techniques baked --against map:pcss"));
+    }
 }

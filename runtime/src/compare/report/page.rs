@@ -6,6 +6,7 @@ use image::ImageError;
 use serde::Serialize;
 use sunbake::report::plot::{Axis, Plot, Point, Series, scatter};
 use sunbake::report::{escape, plain, with_unit};
+use sunbake::words::counted;
 
 /// The viewer's controls, and the element that shows its pictures.
 const VIEWER: &str = include_str!("viewer.html");
@@ -150,13 +151,12 @@ fn facts(report: &Report) -> String {
     let reference =
         format!("{}, {} a frame on the CPU{noise}", report.reference.name, with_unit(report.reference.frame_ms, "ms"));
     let reference = if report.reference.name.starts_with("truth") { reference } else { report.reference.name.clone() };
+    let triangles = counted(report.scene.triangles, "triangle");
+    let [cores, threads] = [(machine.cores, "core"), (machine.threads, "thread")].map(|(n, noun)| counted(n, noun));
     let facts = [
-        (
-            "scene",
-            format!("{}, {} triangles, SHA-256 {}", report.scene.name, report.scene.triangles, report.scene.sha256),
-        ),
+        ("scene", format!("{}, {}, SHA-256 {}", report.scene.name, triangles, report.scene.sha256)),
         ("adapter", report.drawn_by()),
-        ("machine", format!("{}, {} cores, {} threads, {}", machine.cpu, machine.cores, machine.threads, machine.os)),
+        ("machine", format!("{}, {cores}, {threads}, {}", machine.cpu, machine.os)),
         ("reference", reference),
         ("times", times.join(", ")),
         ("cameras", cameras.join("; ")),

@@ -2,6 +2,7 @@
 
 use super::{LeftOut, Passes, Report, SetEntry, TechniqueEntry};
 use sunbake::report::{Cell, Column, Row, Table, escape, plain, with_unit};
+use sunbake::words::counted;
 
 /// Errors and costs of each technique.
 pub(super) fn results(report: &Report) -> String {
@@ -31,9 +32,9 @@ pub(super) fn results(report: &Report) -> String {
     ];
     let table = Table {
         caption: format!(
-            "Compared with {}, over {} frames of {} by {} pixels. Click a heading to sort.",
+            "Compared with {}, over {} of {} by {} pixels. Click a heading to sort.",
             report.reference.name,
-            report.cameras.len() * report.times.len(),
+            counted((report.cameras.len() * report.times.len()) as u64, "frame"),
             report.size[0],
             report.size[1]
         ),

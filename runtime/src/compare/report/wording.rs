@@ -3,17 +3,18 @@
 use super::super::sheet::BestPair;
 use super::{LimitEntry, Report, TechniqueEntry};
 use sunbake::report::{plain, with_unit};
+use sunbake::words::counted;
 
 impl Report {
     /// The report as lines of text.
     pub fn text(&self) -> String {
         let name = self.techniques.iter().map(|technique| technique.name.len()).max().unwrap_or(0).max(9);
         let mut text = format!(
-            "{} against {}, {} frames of {}x{}, on {}\n\n\
+            "{} against {}, {} of {}x{}, on {}\n\n\
              {:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
             self.scene.name,
             self.reference.name,
-            self.cameras.len() * self.times.len(),
+            counted((self.cameras.len() * self.times.len()) as u64, "frame"),
             self.size[0],
             self.size[1],
             self.drawn_by(),

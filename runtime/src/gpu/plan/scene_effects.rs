@@ -1,6 +1,6 @@
 //! Decisions about the effects that all renderers share: those of surfaces, their maps and their textures.
 
-use super::SceneNeeds;
+use super::{PageNeeds, SceneNeeds};
 use crate::gpu::frame::{BatchKey, BatchRequest, Output, TextureSet, depth_key};
 use crate::plan::{Census, DrawEffect, DrawNeed, Reason};
 use crate::stage::Stage;
@@ -216,7 +216,13 @@ impl SceneEffects<'_> {
 
     fn pages(&self) -> DrawNeed {
         let count = self.scene.pages.len();
-        DrawNeed::new(DrawEffect::SeveralPages, (count > 1).then(|| self.saved_by(join_pages)), Reason::Count(count))
+        // A baked page has many texels; the page of one texel is that of what nothing shades.
+        let is_open = |page: &PageNeeds| page.texels == 1;
+        let reason = match self.scene.pages.last() {
+            Some(last) if count > 1 && is_open(last) => Reason::PagesAndOpenTexel(count - 1),
+            _ => Reason::Count(count),
+        };
+        DrawNeed::new(DrawEffect::SeveralPages, (count > 1).then(|| self.saved_by(join_pages)), reason)
     }
 }
 

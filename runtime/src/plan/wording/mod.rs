@@ -4,7 +4,8 @@ mod census;
 mod texts;
 
 use super::{DrawEffect, DrawNeed, Reason, Uncounted};
-use texts::{EffectText, SUN_DOWN, TEXTS};
+use sunbake::words::counted;
+use texts::{EVERYTHING_SHADED, EffectText, ONE_PAGE_AND_EVERYTHING_SHADED, SUN_DOWN, TEXTS};
 
 impl DrawEffect {
     /// Its name, in reports and manifests.
@@ -23,7 +24,12 @@ fn text(effect: DrawEffect) -> &'static EffectText {
 /// The flag or property that would turn an effect off or on.
 pub fn toggled_by(need: &DrawNeed) -> &'static str {
     let text = text(need.effect);
-    if need.is_on { text.off_by } else { text.on_by }
+    match need.reason {
+        Reason::PagesAndOpenTexel(1) => EVERYTHING_SHADED,
+        Reason::PagesAndOpenTexel(_) => ONE_PAGE_AND_EVERYTHING_SHADED,
+        _ if need.is_on => text.off_by,
+        _ => text.on_by,
+    }
 }
 
 /// What an effect takes; where it is off, what it would take.
@@ -31,8 +37,9 @@ pub fn cost(need: &DrawNeed) -> String {
     let EffectText { would_take, also_takes, .. } = *text(need.effect);
     let besides = match need.uncounted {
         Uncounted::Nothing => also_takes.to_owned(),
+        Uncounted::Prisms(1) => "a prism of the triangle, whichever way it faces".into(),
         Uncounted::Prisms(triangles) => format!("prisms of all {triangles} triangles, whichever way they face"),
-        Uncounted::Comparisons(count) => format!("{count} comparisons a pixel"),
+        Uncounted::Comparisons(count) => format!("{} a pixel", counted(count.into(), "comparison")),
         Uncounted::Rays(count) => rays(need.effect, count),
     };
     if !need.is_on {
@@ -51,9 +58,9 @@ pub fn cost(need: &DrawNeed) -> String {
 fn rays(effect: DrawEffect, count: Option<u32>) -> String {
     match (effect, count) {
         (DrawEffect::TruthOfDisc, None) => "N rays a pixel and light, not one".into(),
-        (DrawEffect::TruthOfDisc, Some(n)) => format!("{n} rays a pixel and light"),
+        (DrawEffect::TruthOfDisc, Some(n)) => format!("{} a pixel and light", counted(n.into(), "ray")),
         (_, None) => "a ray a pixel".into(),
-        (_, Some(n)) => format!("{n} rays a pixel"),
+        (_, Some(n)) => format!("{} a pixel", counted(n.into(), "ray")),
     }
 }
 
@@ -62,7 +69,13 @@ pub fn why(need: &DrawNeed) -> String {
     let text = text(need.effect);
     match need.reason {
         Reason::Count(count) => of_count(need.effect, count),
+        Reason::PagesAndOpenTexel(pages) => {
+            let hold = if pages == 1 { "holds" } else { "hold" };
+            format!("{} {hold} what is shaded, and one texel what nothing shades", counted(pages as u64, "page"))
+        }
+        Reason::Slices(1) => "one slice of the view has a map".into(),
         Reason::Slices(maps) => format!("{maps} slices of the view have a map each"),
+        Reason::CubeFaces(1) => "one face of a cube around the sun is seen".into(),
         Reason::CubeFaces(maps) => format!("{maps} faces of a cube around the sun are seen"),
         Reason::Gathered => "the shader compares what a sampler gathers, each texel with the receiver's plane".into(),
         Reason::SunDown => SUN_DOWN.into(),
@@ -135,5 +148,26 @@ mod tests {
             assert_eq!(text.effect as usize, i, "{}", text.name);
             assert!(!text.name.is_empty() && !text.off_by.is_empty() && !text.on_by.is_empty(), "{:?}", text.effect);
         }
+    }
+
+    #[test]
+    fn a_texel_of_what_nothing_shades_is_not_taken_for_a_page_that_a_larger_size_saves() {
+        let pages = |reason| DrawNeed::new(DrawEffect::SeveralPages, Some(Default::default()), reason);
+        let open = pages(Reason::PagesAndOpenTexel(1));
+        assert_eq!(why(&open), "1 page holds what is shaded, and one texel what nothing shades");
+        assert!(toggled_by(&open).contains("--no-receive") && !toggled_by(&open).contains("--size"));
+        let both = pages(Reason::PagesAndOpenTexel(2));
+        assert!(why(&both).starts_with("2 pages hold"), "{}", why(&both));
+        assert!(["--no-receive", "--size"].iter().all(|flag| toggled_by(&both).contains(flag)));
+        assert!(!toggled_by(&pages(Reason::Count(2))).contains("--no-receive"));
+    }
+
+    #[test]
+    fn one_of_a_kind_is_singular() {
+        let rays = |n| {
+            let need = DrawNeed::new(DrawEffect::TruthOfDisc, Some(Default::default()), Reason::Usual);
+            cost(&need.with(Uncounted::Rays(Some(n))))
+        };
+        assert_eq!([1, 2].map(rays), ["1 ray a pixel and light", "2 rays a pixel and light"]);
     }
 }

@@ -21,6 +21,11 @@ pub struct EffectText {
     pub on_by: &'static str,
 }
 
+/// What saves the texel that stands for what nothing shades.
+pub const EVERYTHING_SHADED: &str = "a set in which all objects take shadows: baked without --no-receive";
+/// The same, and what saves pages.
+pub const ONE_PAGE_AND_EVERYTHING_SHADED: &str =
+    "a set baked with a larger --size, or without --texels-per-metre, and without --no-receive";
 pub const SUN_DOWN: &str = "the sun is down, off or not asked for";
 const NEVER: &str = "nothing: it is what a picture is made of";
 const OTHER_MAP: &str = "another --technique map:VARIANT";
@@ -266,8 +271,8 @@ pub const TEXTS: [EffectText; 45] = [
         effect: DrawEffect::SeveralPages,
         name: "several-pages",
         would_take: "the textures and bindings of one page more, and a draw",
-        off_by: "a set baked with a larger --size",
-        on_by: "a set baked with a smaller --size, or --texels-per-metre",
+        off_by: "a set baked with a larger --size, or without --texels-per-metre",
+        on_by: "a set baked with --texels-per-metre and a small --size, or with --no-receive",
         ..NONE
     },
     EffectText {
