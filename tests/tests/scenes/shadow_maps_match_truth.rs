@@ -109,7 +109,11 @@ pub fn trials() -> Vec<Trial> {
             "recommended_shadow_maps_have_neither_acne_nor_leaks",
             recommended_maps_have_neither_acne_nor_leaks,
         ),
-        of_gas_station(claim, |file| errors_are_within_what_is_written("ours", file, &Variant::ALL, &[512, 2048])),
+        of_gas_station(claim, |file| {
+            // Maps of 2048 are drawn slowly in software, and our scene has been measured with them above.
+            let sizes: &[u32] = if is_full() { &[512, 2048] } else { &[512] };
+            errors_are_within_what_is_written("ours", file, &Variant::ALL, sizes);
+        }),
         of_shared("osrf_city/osrf_city.glb", CITY, &[2048]),
         of_shared("gazebo_thin/tower_crane.glb", &Variant::ALL, &[512, 2048]),
         of_shared("gazebo_thin/ladder_60deg_2rails.glb", &Variant::ALL, &[512, 2048]),
