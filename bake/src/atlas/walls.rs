@@ -9,7 +9,7 @@
 //! detail. The surface's own chart is no wall, and neither are surfaces with alpha masks, whose holes let light
 //! through.
 
-use super::reach::{OPEN, marked, wall_code};
+use super::reach::{CORNER_MARGIN, OPEN, marked, wall_code};
 use super::{Atlas, GutterTexel, PageSamples, PageSize, Sample, SurfacePoint, surface_point};
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, Tracer};
@@ -69,9 +69,11 @@ pub fn find_walls(
 enum WallShape {
     /// As straight as filters take it to be.
     Straight,
-    /// It cuts one texel off, and turns within the circle around the two places where it meets the edges: the corner of
-    /// a box, or of a room.
-    Corner,
+    /// It cuts one texel off, and turns within the rectangle between that texel and the two places where it meets the
+    /// edges: a corner whose sides run along rows and columns of texels, or nearly.
+    Square,
+    /// The same within the circle around that rectangle: a corner at any angle.
+    Round,
     /// Any other.
     Bent,
 }
@@ -81,7 +83,8 @@ impl WallShape {
     fn marked(self, [upper, left]: [u8; 2]) -> [u8; 2] {
         match self {
             Self::Straight => [upper, left],
-            Self::Corner => [upper, marked(left)],
+            Self::Square => [upper, marked(left)],
+            Self::Round => [marked(upper), marked(left)],
             Self::Bent => [marked(upper), left],
         }
     }
@@ -193,7 +196,7 @@ impl<'a> WallFinder<'a> {
     }
 
     /// The shape of the walls within a footprint, where two edges have one. Ways across the wall must meet it where a
-    /// straight one would stand, or within the circle of a corner.
+    /// straight one would stand, or within the bounds of a corner.
     fn shape(&self, corners: [Option<&Sample>; 4], codes: [u8; 4]) -> WallShape {
         let has_wall = codes.map(|code| code != OPEN);
         if has_wall.iter().filter(|has_wall| **has_wall).count() != 2 {
@@ -246,7 +249,7 @@ impl<'a> WallFinder<'a> {
         let met = |to: DVec3| self.between([from, to], chart).map(|[near, rest]| [near, 1.0 - rest]);
         let [level, upright] = [met(ends[0])?, met(ends[2])?];
         let near = [level[0].max(1e-9), upright[0].max(1e-9)];
-        let (mut off_line, mut out_of_circle) = (0.0f64, 0.0f64);
+        let [mut off_line, mut out_of_square, mut out_of_circle] = [0.0f64; 3];
         for step in 1..2 * WAYS {
             let share = f64::from(step) / f64::from(WAYS);
             let (to, [u, v]) = match share <= 1.0 {
@@ -255,14 +258,17 @@ impl<'a> WallFinder<'a> {
             };
             let [first, last] = met(to)?;
             off_line = off_line.max((first - 1.0 / (u / near[0] + v / near[1])).abs());
-            // The circle passes through the texel: where the way leaves it again.
+            // Where the way leaves the rectangle, and the circle, which passes through the texel.
+            let square = ((level[1] + CORNER_MARGIN) / u).min((upright[1] + CORNER_MARGIN) / v);
             let circle = (level[1] * u + upright[1] * v) / (u * u + v * v);
+            out_of_square = out_of_square.max(last - square);
             out_of_circle = out_of_circle.max(last - circle);
         }
-        Some(match (off_line > MOST_BENT, out_of_circle > MOST_BENT) {
-            (false, _) => WallShape::Straight,
-            (true, false) => WallShape::Corner,
-            (true, true) => WallShape::Bent,
+        Some(match [off_line, out_of_square, out_of_circle].map(|off| off <= MOST_BENT) {
+            [true, ..] => WallShape::Straight,
+            [_, true, _] => WallShape::Square,
+            [.., true] => WallShape::Round,
+            _ => WallShape::Bent,
         })
     }
 

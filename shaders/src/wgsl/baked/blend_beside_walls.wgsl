@@ -7,6 +7,11 @@ const OPEN_MARKED: u32 = 254u;
 const MARKED: u32 = 127u;
 const PLACES: u32 = 96u;
 const HALF_WIDTH: f32 = 1.0 / 64.0;
+const CORNER_MARGIN: f32 = 1.0 / 16.0;
+const STRAIGHT: u32 = 0u;
+const BENT: u32 = 1u;
+const SQUARE: u32 = 2u;
+const ROUND: u32 = 3u;
 const STEPS: u32 = 8u;
 const APART: u32 = 2u;
 
@@ -87,20 +92,18 @@ fn at_wall_end(
 
 // Where a wall cuts the marked texel off, straight or with a corner: `level` and `upright` are the edges that meet in
 // it, and `place` is the point's, seen from it.
-fn cut_off(
-    at: vec2<f32>,
-    is_corner: bool,
-    texel: vec4<f32>,
-    level: Edge,
-    upright: Edge,
-    place: vec2<f32>,
-) -> Reach {
-    if !is_corner && place.x * upright.near + place.y * level.near < level.near * upright.near {
+fn cut_off(at: vec2<f32>, shape: u32, texel: vec4<f32>, level: Edge, upright: Edge, place: vec2<f32>) -> Reach {
+    let far = vec2<f32>(level.far, upright.far);
+    if shape == STRAIGHT && place.x * upright.near + place.y * level.near < level.near * upright.near {
         return Reach(texel, false);
     }
-    let is_beyond_line = place.x * upright.far + place.y * level.far > level.far * upright.far;
-    let is_beyond_circle = dot(place, place) > dot(place, vec2<f32>(level.far, upright.far));
-    if select(is_beyond_line, is_beyond_circle, is_corner) {
+    var is_outside = dot(place, far.yx) > far.x * far.y;
+    if shape == SQUARE {
+        is_outside = any(place > far + CORNER_MARGIN);
+    } else if shape == ROUND {
+        is_outside = dot(place, place) > dot(place, far);
+    }
+    if is_outside {
         return Reach(without(at, texel), false);
     }
     return Reach(vec4<f32>(0.0), true);
@@ -131,13 +134,13 @@ fn reach(footprint: Footprint) -> Reach {
     let back = 1.0 - at;
     let walls = vec4<bool>(top.has_wall, bottom.has_wall, left.has_wall, right.has_wall);
     let count = dot(select(vec4<f32>(0.0), vec4<f32>(1.0), walls), vec4<f32>(1.0));
-    if is_marked(first.x) || count > 2.0 {
+    let shape = u32(is_marked(first.x)) + 2u * u32(is_marked(first.y));
+    if shape == BENT || count > 2.0 {
         return Reach(vec4<f32>(0.25), true);
     }
     if count == 0.0 {
         return Reach(plain(at), false);
     }
-    let is_corner = is_marked(first.y);
     if walls.x && walls.y {
         let side = sides(between(top, bottom, at.y), at.x);
         return Reach(vec4<f32>(side * back.y, side * at.y), side.x + side.y == 0.0);
@@ -148,16 +151,16 @@ fn reach(footprint: Footprint) -> Reach {
         return Reach(vec4<f32>(side.x * level, side.y * level), side.x + side.y == 0.0);
     }
     if walls.x && walls.z {
-        return cut_off(at, is_corner, upper_left, top, left, at);
+        return cut_off(at, shape, upper_left, top, left, at);
     }
     if walls.x && walls.w {
-        return cut_off(at, is_corner, upper_right, turned(top), right, vec2<f32>(back.x, at.y));
+        return cut_off(at, shape, upper_right, turned(top), right, vec2<f32>(back.x, at.y));
     }
     if walls.y && walls.z {
-        return cut_off(at, is_corner, lower_left, bottom, turned(left), vec2<f32>(at.x, back.y));
+        return cut_off(at, shape, lower_left, bottom, turned(left), vec2<f32>(at.x, back.y));
     }
     if walls.y && walls.w {
-        return cut_off(at, is_corner, lower_right, turned(bottom), turned(right), back);
+        return cut_off(at, shape, lower_right, turned(bottom), turned(right), back);
     }
     if walls.x {
         return at_wall_end(at, top, at.x, at.y, upper_left, upper_right);
