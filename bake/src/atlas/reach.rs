@@ -8,8 +8,8 @@
 //! wall at one of [`PLACES`] places, or two surfaces at least a quarter of the way apart (a thick wall, or the corner
 //! of a room), to an eighth of the way. Within the wall the darkest of the four texels counts. A footprint has four
 //! such ways: its edges. Walls are taken to be straight within it. Where the baker found another shape, a code has a
-//! mark ([`marked`]): the left edge's for a corner along rows and columns, the upper edge's for other shapes, both for
-//! a corner at another angle.
+//! mark ([`marked`]): the left edge's where a filter can still tell sides (a corner along rows and columns; a straight
+//! wall beside an open edge), the upper edge's where it cannot, both for a corner at another angle.
 //!
 //! * No edge has a wall: plain weights.
 //! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
@@ -21,8 +21,8 @@
 //! * One edge has one: the wall ends within the footprint. On that edge one texel counts, on the opposite edge both do,
 //!   and in between they are blended. Between two walls that are well apart it is dark: a corner of a room narrower
 //!   than a texel.
-//! * More edges have one, or the footprint is marked: the darkest of the four counts. Light never leaks; shade may, by
-//!   a part of a texel.
+//! * Three edges have one, and beside the open edge the wall runs straight: that edge's two texels on their side.
+//! * Else the darkest of the four counts. Light never leaks; shade may, by a part of a texel.
 //!
 //! Twin: `shaders/src/wgsl/baked/blend_beside_walls.wgsl`.
 
@@ -40,9 +40,6 @@ const PLACES: u8 = 96;
 
 /// Half the width of a wall at a place: rounding, and what a straight wall may be off.
 const HALF_WIDTH: f32 = 1.0 / 64.0;
-
-/// How far beyond its rectangle a corner may reach, as a share of the way: it may be turned by some degrees.
-pub const CORNER_MARGIN: f64 = 1.0 / 16.0;
 
 /// Steps of the way, and the fewest between two surfaces that are apart. There are 28 such pairs.
 const STEPS: u8 = 8;
@@ -76,7 +73,8 @@ fn pairs_before(near: u8) -> u8 {
 }
 
 /// A code with a mark about the walls within the footprint below and to the right of its way. On the way to the right:
-/// they are bent. On the way down: they turn a corner around the texel that they cut off. On both: one at an angle.
+/// they are bent. On the way down: they turn a corner around the texel that they cut off, or run straight beside the
+/// only open edge. On both: a corner at an angle.
 pub fn marked(code: u8) -> u8 {
     if code == OPEN { OPEN_MARKED } else { code + MARKED }
 }
@@ -183,7 +181,12 @@ impl Reach {
             [false, true, false, false] => at_wall_end(at, bottom, x, 1.0 - y, [2, 3]),
             [false, false, true, false] => at_wall_end(at, left, y, x, [0, 2]),
             [false, false, false, true] => at_wall_end(at, right, y, 1.0 - x, [1, 3]),
-            _ => Self::darkest(),
+            _ if !is_marked(codes[2]) => Self::darkest(),
+            [false, true, true, true] => beside_open_edge(left.between(right, x).sides(y)[0], [0, 1], x),
+            [true, false, true, true] => beside_open_edge(left.between(right, x).sides(y)[1], [2, 3], x),
+            [true, true, false, true] => beside_open_edge(top.between(bottom, y).sides(x)[0], [0, 2], y),
+            [true, true, true, false] => beside_open_edge(top.between(bottom, y).sides(x)[1], [1, 3], y),
+            [true, true, true, true] => Self::darkest(),
         }
     }
 }
@@ -217,10 +220,20 @@ fn cut_off(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32;
     Reach::darkest()
 }
 
-/// The same where the wall turns a corner along rows and columns.
+/// Where only one edge has no wall: `is_there` is 1 on that edge's side of the wall, `ends` are its texels, and `along`
+/// is the place along it.
+fn beside_open_edge(is_there: f32, ends: [usize; 2], along: f32) -> Reach {
+    if is_there == 0.0 {
+        return Reach::darkest();
+    }
+    let mut weights = [0.0; 4];
+    (weights[ends[0]], weights[ends[1]]) = (1.0 - along, along);
+    Reach::of(weights)
+}
+
+/// As [`cut_off`], where the wall turns a corner along rows and columns.
 fn cut_off_by_square(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
-    let margin = CORNER_MARGIN as f32;
-    if u <= level.far + margin && v <= upright.far + margin {
+    if u <= level.far && v <= upright.far {
         return Reach::darkest();
     }
     Reach::of(without(at, texel))
@@ -345,7 +358,7 @@ mod tests {
                 let leaves =
                     |u: f64, v: f64| (0..=2000).map(|i| f64::from(i) / 2000.0).find(|s| !is_inside(s * u, s * v));
                 let [p, q] = [leaves(1.0, 0.0), leaves(0.0, 1.0)].map(|place| place.unwrap_or(1.0));
-                let is_round = x > p + CORNER_MARGIN || y > q + CORNER_MARGIN;
+                let is_round = x > p + 1e-3 || y > q + 1e-3;
                 for texel in 0..4 {
                     let [flips_x, flips_y] = [texel % 2 == 1, texel / 2 == 1];
                     let [p, q] = [wall_code_from(p, flips_x), wall_code_from(q, flips_y)];
@@ -370,7 +383,28 @@ mod tests {
             }
         }
         let mean_texels = [0, 1].map(|shape: usize| dark[shape] as f64 / f64::from(footprints[shape] * 21 * 21));
-        assert!(mean_texels[0] < 0.09 && mean_texels[1] < 0.2, "texels outside that are dark: {mean_texels:?}");
+        assert!(mean_texels[0] < 0.03 && mean_texels[1] < 0.2, "texels outside that are dark: {mean_texels:?}");
+    }
+
+    #[test]
+    fn beside_an_open_edge_its_two_texels_count() {
+        let [middle, any] = [wall_code(0.5, 0.5), wall_code(0.2, 0.7)];
+        for open in 0..4 {
+            let mut codes = [any; 4];
+            (codes[if open < 2 { 2 } else { 0 }], codes[if open < 2 { 3 } else { 1 }]) = (middle, middle);
+            codes[open] = OPEN;
+            codes[2] = marked(codes[2]);
+            let at = |depth: f32| [[0.25, depth], [0.25, 1.0 - depth], [depth, 0.25], [1.0 - depth, 0.25]][open];
+            let reach = Reach::new(at(0.3), codes);
+            let ends = [[0, 1], [2, 3], [0, 2], [1, 3]][open];
+            assert!(
+                !reach.takes_darkest && ends.map(|texel| reach.weights[texel]) == [0.75, 0.25],
+                "{open}: {reach:?}"
+            );
+            assert!(Reach::new(at(0.6), codes).takes_darkest);
+            codes[2] = unmarked(codes[2]);
+            assert!(Reach::new(at(0.3), codes).takes_darkest);
+        }
     }
 
     fn wall_code_from(place: f64, is_turned: bool) -> u8 {

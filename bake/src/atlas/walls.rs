@@ -9,7 +9,7 @@
 //! detail. The surface's own chart is no wall, and neither are surfaces with alpha masks, whose holes let light
 //! through.
 
-use super::reach::{CORNER_MARGIN, OPEN, marked, wall_code};
+use super::reach::{OPEN, marked, wall_code};
 use super::{Atlas, GutterTexel, PageSamples, PageSize, Sample, SurfacePoint, surface_point};
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, Tracer};
@@ -70,9 +70,11 @@ enum WallShape {
     /// As straight as filters take it to be.
     Straight,
     /// It cuts one texel off, and turns within the rectangle between that texel and the two places where it meets the
-    /// edges: a corner whose sides run along rows and columns of texels, or nearly.
+    /// edges: a corner whose sides run along rows and columns of texels.
     Square,
-    /// The same within the circle around that rectangle: a corner at any angle.
+    /// Three edges have one, and beside the fourth a wall runs straight: the foot of a wall that is made of two boxes.
+    BesideOpenEdge,
+    /// As the rectangle, within the circle around it: a corner at any angle.
     Round,
     /// Any other.
     Bent,
@@ -83,7 +85,7 @@ impl WallShape {
     fn marked(self, [upper, left]: [u8; 2]) -> [u8; 2] {
         match self {
             Self::Straight => [upper, left],
-            Self::Square => [upper, marked(left)],
+            Self::Square | Self::BesideOpenEdge => [upper, marked(left)],
             Self::Round => [marked(upper), marked(left)],
             Self::Bent => [marked(upper), left],
         }
@@ -195,11 +197,11 @@ impl<'a> WallFinder<'a> {
         Some(wall_code(near, far))
     }
 
-    /// The shape of the walls within a footprint, where two edges have one. Ways across the wall must meet it where a
-    /// straight one would stand, or within the bounds of a corner.
+    /// The shape of the walls within a footprint, where two or three edges have one. Ways across the wall must meet it
+    /// where a straight one would stand, or within the bounds of a corner.
     fn shape(&self, corners: [Option<&Sample>; 4], codes: [u8; 4]) -> WallShape {
         let has_wall = codes.map(|code| code != OPEN);
-        if has_wall.iter().filter(|has_wall| **has_wall).count() != 2 {
+        if !(2..=3).contains(&has_wall.iter().filter(|has_wall| **has_wall).count()) {
             return WallShape::Straight;
         }
         let [Some(a), Some(b), Some(c), Some(d)] = corners else { return WallShape::Bent };
@@ -216,6 +218,10 @@ impl<'a> WallFinder<'a> {
     /// The shape of the wall that two edges have. `None` where a way meets no wall.
     fn shape_between(&self, [a, b, c, d]: [DVec3; 4], has_wall: [bool; 4], chart: (usize, u32)) -> Option<WallShape> {
         match has_wall {
+            [true, false, true, true] => self.shape_beside([c, d], [a, b], chart),
+            [false, true, true, true] => self.shape_beside([a, b], [c, d], chart),
+            [true, true, false, true] => self.shape_beside([a, c], [b, d], chart),
+            [true, true, true, false] => self.shape_beside([b, d], [a, c], chart),
             [true, true, ..] => self.shape_across([a, c], [b, d], chart),
             [.., true, true] => self.shape_across([a, b], [c, d], chart),
             [true, _, true, _] => self.shape_around(a, [b, d, c], chart),
@@ -228,18 +234,30 @@ impl<'a> WallFinder<'a> {
     /// Of a wall between two edges, on ways from one to the other: the first way meets it on one edge of the footprint,
     /// the last on the opposite one.
     fn shape_across(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<WallShape> {
+        let bent = self.most_bent(starts, ends, chart)?;
+        Some(if bent[0].max(bent[1]) > MOST_BENT { WallShape::Bent } else { WallShape::Straight })
+    }
+
+    /// Of the wall beside an open edge, on ways from there.
+    fn shape_beside(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<WallShape> {
+        let [from_start, _] = self.most_bent(starts, ends, chart)?;
+        Some(if from_start > MOST_BENT { WallShape::Bent } else { WallShape::BesideOpenEdge })
+    }
+
+    /// How far a wall is from straight, seen from the starts of ways across it and from their ends.
+    fn most_bent(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<[f64; 2]> {
         let way = |share: f64| [starts[0].lerp(starts[1], share), ends[0].lerp(ends[1], share)];
         let met_at = |share: f64| self.between(way(share), chart);
         let [first, last] = [met_at(0.0)?, met_at(1.0)?];
-        let mut most = 0.0f64;
+        let mut most = [0.0f64; 2];
         for step in 1..WAYS {
             let share = f64::from(step) / f64::from(WAYS);
             let met = met_at(share)?;
             for end in 0..2 {
-                most = most.max((met[end] - (first[end] + (last[end] - first[end]) * share)).abs());
+                most[end] = most[end].max((met[end] - (first[end] + (last[end] - first[end]) * share)).abs());
             }
         }
-        Some(if most > MOST_BENT { WallShape::Bent } else { WallShape::Straight })
+        Some(most)
     }
 
     /// Of a wall around a texel that it cuts off, on ways from there to points on the two edges that do not meet there:
@@ -259,7 +277,7 @@ impl<'a> WallFinder<'a> {
             let [first, last] = met(to)?;
             off_line = off_line.max((first - 1.0 / (u / near[0] + v / near[1])).abs());
             // Where the way leaves the rectangle, and the circle, which passes through the texel.
-            let square = ((level[1] + CORNER_MARGIN) / u).min((upright[1] + CORNER_MARGIN) / v);
+            let square = (level[1] / u).min(upright[1] / v);
             let circle = (level[1] * u + upright[1] * v) / (u * u + v * v);
             out_of_square = out_of_square.max(last - square);
             out_of_circle = out_of_circle.max(last - circle);

@@ -7,7 +7,6 @@ const OPEN_MARKED: u32 = 254u;
 const MARKED: u32 = 127u;
 const PLACES: u32 = 96u;
 const HALF_WIDTH: f32 = 1.0 / 64.0;
-const CORNER_MARGIN: f32 = 1.0 / 16.0;
 const STRAIGHT: u32 = 0u;
 const BENT: u32 = 1u;
 const SQUARE: u32 = 2u;
@@ -99,7 +98,7 @@ fn cut_off(at: vec2<f32>, shape: u32, texel: vec4<f32>, level: Edge, upright: Ed
     }
     var is_outside = dot(place, far.yx) > far.x * far.y;
     if shape == SQUARE {
-        is_outside = any(place > far + CORNER_MARGIN);
+        is_outside = any(place > far);
     } else if shape == ROUND {
         is_outside = dot(place, place) > dot(place, far);
     }
@@ -135,8 +134,17 @@ fn reach(footprint: Footprint) -> Reach {
     let walls = vec4<bool>(top.has_wall, bottom.has_wall, left.has_wall, right.has_wall);
     let count = dot(select(vec4<f32>(0.0), vec4<f32>(1.0), walls), vec4<f32>(1.0));
     let shape = u32(is_marked(first.x)) + 2u * u32(is_marked(first.y));
-    if shape == BENT || count > 2.0 {
+    if shape == BENT || (count > 2.0 && shape != SQUARE) || count > 3.0 {
         return Reach(vec4<f32>(0.25), true);
+    }
+    if count == 3.0 {
+        let level = sides(between(top, bottom, at.y), at.x);
+        let upright = sides(between(left, right, at.x), at.y);
+        let open = select(vec4<f32>(1.0), vec4<f32>(0.0), walls);
+        let upper_lower = open.xxyy * upright.xxyy * vec4<f32>(back.x, at.x, back.x, at.x);
+        let left_right = open.zwzw * level.xyxy * vec4<f32>(back.y, back.y, at.y, at.y);
+        let weights = upper_lower + left_right;
+        return Reach(weights, all(weights == vec4<f32>(0.0)));
     }
     if count == 0.0 {
         return Reach(plain(at), false);
