@@ -38,7 +38,7 @@ pub use build::build;
 pub use error::AtlasError;
 pub use footprint::{Filtered, Footprint};
 pub use gutter::{GutterTexel, gutter};
-pub use reach::{OPEN, Reach, is_open, wall_code};
+pub use reach::{HiddenEnd, OPEN, Reach, is_open, wall_code};
 pub use samples::{in_tile_order, sample_page, sample_page_supersampled, surface_point};
 pub use walls::{WallFinder, find_walls};
 

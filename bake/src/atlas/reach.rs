@@ -14,10 +14,10 @@
 //! * No edge has a wall: plain weights.
 //! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
 //! * Two edges that meet have one: it cuts off the texel between them. On its side of the wall that texel counts
-//!   alone, on the other side the other three. Where it turns a corner, it does so within the rectangle
-//!   between that texel and the two places where the wall meets the edges, or, at an angle, within the circle around
-//!   them (Thales' circle: a right angle lies on it). Within those the darkest of the four counts, outside the other
-//!   three.
+//!   alone, on the other side the other three. Where it turns a corner along rows and
+//!   columns, that texel's side is the rectangle between it and the two places where the wall meets the edges. At an
+//!   angle all that is known is that the wall lies within the circle around them (Thales' circle: a right angle lies on
+//!   it): within that the darkest of the four counts, outside the other three.
 //! * One edge has one: the wall ends within the footprint. On that edge one texel counts, on the opposite edge both do,
 //!   and in between they are blended. Between two walls that are well apart it is dark: a corner of a room narrower
 //!   than a texel.
@@ -41,6 +41,20 @@ const PLACES: u8 = 96;
 /// Half the width of a wall at a place: rounding, and what a straight wall may be off.
 const HALF_WIDTH: f32 = 1.0 / 64.0;
 
+/// What a wall may be off the place or the line that filters take it to be at, as a share of the way.
+pub const MOST_OFF: f64 = 1.0 / 512.0;
+
+/// From which end of a way one sees into a solid, or a room without inner faces: nobody looks from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HiddenEnd {
+    /// From neither, or both.
+    None,
+    /// From the first.
+    First,
+    /// From the second.
+    Second,
+}
+
 /// Steps of the way, and the fewest between two surfaces that are apart. There are 28 such pairs.
 const STEPS: u8 = 8;
 const APART: u8 = 2;
@@ -55,12 +69,18 @@ pub struct Reach {
 }
 
 /// The code of a way on which the first surface stands at these shares of it, 0 to 1, seen from the first end and from
-/// the second.
-pub fn wall_code(from_first: f64, from_second: f64) -> u8 {
+/// the second. Within a wall's width filters take the darkest texel: it lies on the hidden side, if there is one, so that
+/// there is no dark line on the other.
+pub fn wall_code(from_first: f64, from_second: f64, hidden: HiddenEnd) -> u8 {
     let (near, far) = (from_first.clamp(0.0, 1.0), 1.0 - from_second.clamp(0.0, 1.0));
     if (far - near) * f64::from(STEPS) < f64::from(APART) {
-        let place = (near + far) * 0.5 * f64::from(PLACES - 1);
-        return place.round() as u8;
+        let spare = f64::from(HALF_WIDTH) - MOST_OFF;
+        let place = |share: f64| (share * f64::from(PLACES - 1)).clamp(0.0, f64::from(PLACES - 1));
+        return match hidden {
+            HiddenEnd::None => place((near + far) * 0.5).round(),
+            HiddenEnd::First => place(far - spare).ceil(),
+            HiddenEnd::Second => place(near + spare).floor(),
+        } as u8;
     }
     let near = (near * f64::from(STEPS)).floor() as u8;
     let far = ((far * f64::from(STEPS)).ceil() as u8).min(STEPS);
@@ -210,9 +230,7 @@ fn at_wall_end(at: [f32; 2], edge: Edge, along: f32, away: f32, ends: [usize; 2]
 /// seen from it.
 fn cut_off(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
     if u * upright.near + v * level.near < level.near * upright.near {
-        let mut weights = [0.0; 4];
-        weights[texel] = 1.0;
-        return Reach::of(weights);
+        return Reach::of(only(texel));
     }
     if u * upright.far + v * level.far > level.far * upright.far {
         return Reach::of(without(at, texel));
@@ -233,10 +251,13 @@ fn beside_open_edge(is_there: f32, ends: [usize; 2], along: f32) -> Reach {
 
 /// As [`cut_off`], where the wall turns a corner along rows and columns.
 fn cut_off_by_square(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u, v]: [f32; 2]) -> Reach {
-    if u <= level.far && v <= upright.far {
-        return Reach::darkest();
+    if u < level.near && v < upright.near {
+        return Reach::of(only(texel));
     }
-    Reach::of(without(at, texel))
+    if u > level.far || v > upright.far {
+        return Reach::of(without(at, texel));
+    }
+    Reach::darkest()
 }
 
 /// The same where it turns one at another angle.
@@ -245,6 +266,10 @@ fn cut_off_by_circle(at: [f32; 2], texel: usize, level: Edge, upright: Edge, [u,
         return Reach::darkest();
     }
     Reach::of(without(at, texel))
+}
+
+fn only(texel: usize) -> [f32; 4] {
+    [0, 1, 2, 3].map(|other| if other == texel { 1.0 } else { 0.0 })
 }
 
 /// Plain weights of all texels but one.
@@ -290,7 +315,7 @@ mod tests {
                         false => {
                             let crossing = |depth: f64| (corner(a) - depth) / (corner(a) - corner(b));
                             let [near, far] = [crossing(0.0), crossing(-thickness)];
-                            wall_code(near.min(far), 1.0 - near.max(far))
+                            wall_code(near.min(far), 1.0 - near.max(far), HiddenEnd::None)
                         }
                     };
                     let codes = [code(0, 1), code(2, 3), code(0, 2), code(1, 3)];
@@ -315,7 +340,7 @@ mod tests {
         for i in 0..=40 {
             for j in 0..=40 - i {
                 let [near, from_second] = [i, j].map(|k| f64::from(k) / 40.0);
-                let code = wall_code(near, from_second);
+                let code = wall_code(near, from_second, HiddenEnd::None);
                 assert!(code < MARKED && !is_open(code), "{near} {from_second}: {code}");
                 let (plain, bent) = (Edge::new(code), Edge::new(marked(code)));
                 assert!(is_marked(marked(code)) && !is_marked(code));
@@ -388,7 +413,7 @@ mod tests {
 
     #[test]
     fn beside_an_open_edge_its_two_texels_count() {
-        let [middle, any] = [wall_code(0.5, 0.5), wall_code(0.2, 0.7)];
+        let [middle, any] = [wall_code(0.5, 0.5, HiddenEnd::None), wall_code(0.2, 0.7, HiddenEnd::None)];
         for open in 0..4 {
             let mut codes = [any; 4];
             (codes[if open < 2 { 2 } else { 0 }], codes[if open < 2 { 3 } else { 1 }]) = (middle, middle);
@@ -407,17 +432,38 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_width_of_a_wall_lies_on_its_hidden_side() {
+        for place in (0..=1000).map(|i| f64::from(i) / 1000.0) {
+            let edge = |hidden| Edge::new(wall_code(place, 1.0 - place, hidden));
+            let [first, second] = [HiddenEnd::First, HiddenEnd::Second].map(edge);
+            let [beyond, before] = [f64::from(first.far) - place, place - f64::from(second.near)];
+            for (visible, width) in [(beyond, first.far - first.near), (before, second.far - second.near)] {
+                let at_end = width < 2.0 * HALF_WIDTH - 1e-6;
+                assert!(visible >= 0.0 && (at_end || visible <= MOST_OFF + 1.0 / 95.0), "{place}: {visible}");
+            }
+        }
+    }
+
     fn wall_code_from(place: f64, is_turned: bool) -> u8 {
         let place = if is_turned { 1.0 - place } else { place };
-        wall_code(place, 1.0 - place)
+        wall_code(place, 1.0 - place, HiddenEnd::None)
     }
 
     #[test]
     fn neighbouring_footprints_agree_on_their_common_edge() {
         // The lower edge of one is the upper of the next, whatever the other edges have.
-        for code in [OPEN, wall_code(0.3, 0.6), wall_code(0.0, 0.9)] {
-            for upper in [[OPEN; 3], [wall_code(0.4, 0.5), OPEN, OPEN], [OPEN, OPEN, wall_code(0.2, 0.7)]] {
-                for lower in [[OPEN; 3], [wall_code(0.9, 0.05), OPEN, OPEN], [OPEN, wall_code(0.5, 0.4), OPEN]] {
+        for code in [OPEN, wall_code(0.3, 0.6, HiddenEnd::None), wall_code(0.0, 0.9, HiddenEnd::None)] {
+            for upper in [
+                [OPEN; 3],
+                [wall_code(0.4, 0.5, HiddenEnd::None), OPEN, OPEN],
+                [OPEN, OPEN, wall_code(0.2, 0.7, HiddenEnd::None)],
+            ] {
+                for lower in [
+                    [OPEN; 3],
+                    [wall_code(0.9, 0.05, HiddenEnd::None), OPEN, OPEN],
+                    [OPEN, wall_code(0.5, 0.4, HiddenEnd::None), OPEN],
+                ] {
                     for i in 0..=20 {
                         let x = i as f32 / 20.0;
                         let above = Reach::new([x, 1.0], [upper[0], code, upper[1], upper[2]]);

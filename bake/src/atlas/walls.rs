@@ -9,7 +9,7 @@
 //! detail. The surface's own chart is no wall, and neither are surfaces with alpha masks, whose holes let light
 //! through.
 
-use super::reach::{OPEN, marked, wall_code};
+use super::reach::{HiddenEnd, MOST_OFF, OPEN, marked, wall_code};
 use super::{Atlas, GutterTexel, PageSamples, PageSize, Sample, SurfacePoint, surface_point};
 use crate::scene::{Geometry, Scene};
 use crate::trace::{Direction, Tracer};
@@ -69,12 +69,12 @@ pub fn find_walls(
 enum WallShape {
     /// As straight as filters take it to be.
     Straight,
-    /// It cuts one texel off, and turns within the rectangle between that texel and the two places where it meets the
-    /// edges: a corner whose sides run along rows and columns of texels.
+    /// It cuts one texel off, and is the outline of the rectangle between that texel and the two places where it meets
+    /// the edges: a corner whose sides run along rows and columns of texels.
     Square,
     /// Three edges have one, and beside the fourth a wall runs straight: the foot of a wall that is made of two boxes.
     BesideOpenEdge,
-    /// As the rectangle, within the circle around it: a corner at any angle.
+    /// It cuts one texel off, and turns within the circle around that rectangle: a corner at any angle.
     Round,
     /// Any other.
     Bent,
@@ -93,8 +93,6 @@ impl WallShape {
 }
 
 const NO_SAMPLE: u32 = u32::MAX;
-/// How far a wall may be from straight, as a share of the way: with rounding, filters allow for a little more.
-const MOST_BENT: f64 = 1.0 / 128.0;
 /// Parts into which a footprint is cut to see whether a wall is straight.
 const WAYS: u32 = 6;
 /// Share of the height of a ceiling that a wall below it must reach.
@@ -131,6 +129,15 @@ fn root(parent: &mut [u32], mut v: u32) -> u32 {
         v = parent[v as usize];
     }
     v
+}
+
+/// A wall on a way, seen from one of its ends.
+#[derive(Debug, Clone, Copy)]
+struct WallMet {
+    /// Share of the way to it.
+    share: f64,
+    /// Whether only its back is seen, which nobody draws.
+    is_back: bool,
 }
 
 /// Finds what stands between texels of an atlas.
@@ -190,11 +197,16 @@ impl<'a> WallFinder<'a> {
             let up = |at: DVec3, p: &SurfacePoint| at + p.normal * (side * height_m);
             [up(a, &points[0]), up(b, &points[1])]
         };
-        let [near, far] = self.between(raised(raised_m), chart)?;
+        let [near, far] = self.met(raised(raised_m), chart)?;
         let clear_m = [(a, &points[0]), (b, &points[1])].map(|(from, point)| self.clear_m(from, point.normal * side));
         let higher_m = (raised_m + apart_m).min(UNDER_CEILING * clear_m[0].min(clear_m[1]));
         self.between(raised(higher_m), chart)?;
-        Some(wall_code(near, far))
+        let hidden = match [near.is_back, far.is_back] {
+            [true, false] => HiddenEnd::First,
+            [false, true] => HiddenEnd::Second,
+            _ => HiddenEnd::None,
+        };
+        Some(wall_code(near.share, far.share, hidden))
     }
 
     /// The shape of the walls within a footprint, where two or three edges have one. Ways across the wall must meet it
@@ -235,13 +247,13 @@ impl<'a> WallFinder<'a> {
     /// the last on the opposite one.
     fn shape_across(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<WallShape> {
         let bent = self.most_bent(starts, ends, chart)?;
-        Some(if bent[0].max(bent[1]) > MOST_BENT { WallShape::Bent } else { WallShape::Straight })
+        Some(if bent[0].max(bent[1]) > MOST_OFF { WallShape::Bent } else { WallShape::Straight })
     }
 
     /// Of the wall beside an open edge, on ways from there.
     fn shape_beside(&self, starts: [DVec3; 2], ends: [DVec3; 2], chart: (usize, u32)) -> Option<WallShape> {
         let [from_start, _] = self.most_bent(starts, ends, chart)?;
-        Some(if from_start > MOST_BENT { WallShape::Bent } else { WallShape::BesideOpenEdge })
+        Some(if from_start > MOST_OFF { WallShape::Bent } else { WallShape::BesideOpenEdge })
     }
 
     /// How far a wall is from straight, seen from the starts of ways across it and from their ends.
@@ -267,7 +279,7 @@ impl<'a> WallFinder<'a> {
         let met = |to: DVec3| self.between([from, to], chart).map(|[near, rest]| [near, 1.0 - rest]);
         let [level, upright] = [met(ends[0])?, met(ends[2])?];
         let near = [level[0].max(1e-9), upright[0].max(1e-9)];
-        let [mut off_line, mut out_of_square, mut out_of_circle] = [0.0f64; 3];
+        let [mut off_line, mut off_square, mut out_of_circle] = [0.0f64; 3];
         for step in 1..2 * WAYS {
             let share = f64::from(step) / f64::from(WAYS);
             let (to, [u, v]) = match share <= 1.0 {
@@ -277,12 +289,12 @@ impl<'a> WallFinder<'a> {
             let [first, last] = met(to)?;
             off_line = off_line.max((first - 1.0 / (u / near[0] + v / near[1])).abs());
             // Where the way leaves the rectangle, and the circle, which passes through the texel.
-            let square = (level[1] / u).min(upright[1] / v);
+            let square = [0, 1].map(|end: usize| (level[end] / u).min(upright[end] / v));
             let circle = (level[1] * u + upright[1] * v) / (u * u + v * v);
-            out_of_square = out_of_square.max(last - square);
+            off_square = off_square.max((square[0] - first).abs()).max((square[1] - last).abs());
             out_of_circle = out_of_circle.max(last - circle);
         }
-        Some(match [off_line, out_of_square, out_of_circle].map(|off| off <= MOST_BENT) {
+        Some(match [off_line, off_square, out_of_circle].map(|off| off <= MOST_OFF) {
             [true, ..] => WallShape::Straight,
             [_, true, _] => WallShape::Square,
             [.., true] => WallShape::Round,
@@ -302,13 +314,21 @@ impl<'a> WallFinder<'a> {
     }
 
     /// How far, as shares of the way, the first walls are from either end.
-    fn between(&self, [a, b]: [DVec3; 2], chart: (usize, u32)) -> Option<[f64; 2]> {
+    fn between(&self, ends: [DVec3; 2], chart: (usize, u32)) -> Option<[f64; 2]> {
+        Some(self.met(ends, chart)?.map(|met| met.share))
+    }
+
+    /// The first walls from either end.
+    fn met(&self, [a, b]: [DVec3; 2], chart: (usize, u32)) -> Option<[WallMet; 2]> {
         let apart_m = a.distance(b);
         let along = (b - a).try_normalize()?;
         let first = |from: DVec3, along: DVec3| {
             let is_wall = |triangle: u32| self.chart(triangle) != chart && !self.has_holes(triangle);
             let hit = self.tracer.closest_hit_where(from, &Direction::new(along), is_wall)?;
-            (hit.distance_m < apart_m).then_some(hit.distance_m / apart_m)
+            let instance = self.geometry.instance[hit.triangle as usize] as usize;
+            let is_back = self.geometry.normal(hit.triangle as usize).dot(along) > 0.0
+                && !self.scene.material(instance).is_double_sided;
+            (hit.distance_m < apart_m).then_some(WallMet { share: hit.distance_m / apart_m, is_back })
         };
         Some([first(a, along)?, first(b, -along)?])
     }

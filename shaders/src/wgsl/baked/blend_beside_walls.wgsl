@@ -92,7 +92,11 @@ fn at_wall_end(
 // Where a wall cuts the marked texel off, straight or with a corner: `level` and `upright` are the edges that meet in
 // it, and `place` is the point's, seen from it.
 fn cut_off(at: vec2<f32>, shape: u32, texel: vec4<f32>, level: Edge, upright: Edge, place: vec2<f32>) -> Reach {
+    let near = vec2<f32>(level.near, upright.near);
     let far = vec2<f32>(level.far, upright.far);
+    if shape == SQUARE && all(place < near) {
+        return Reach(texel, false);
+    }
     if shape == STRAIGHT && place.x * upright.near + place.y * level.near < level.near * upright.near {
         return Reach(texel, false);
     }
