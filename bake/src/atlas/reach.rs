@@ -69,8 +69,8 @@ pub struct Reach {
 }
 
 /// The code of a way on which the first surface stands at these shares of it, 0 to 1, seen from the first end and from
-/// the second. Within a wall's width filters take the darkest texel: it lies on the hidden side, if there is one, so that
-/// there is no dark line on the other.
+/// the second. Within a wall's width filters take the darkest texel. It lies on the hidden side, if there is one: there
+/// is no dark line on the other.
 pub fn wall_code(from_first: f64, from_second: f64, hidden: HiddenEnd) -> u8 {
     let (near, far) = (from_first.clamp(0.0, 1.0), 1.0 - from_second.clamp(0.0, 1.0));
     if (far - near) * f64::from(STEPS) < f64::from(APART) {
