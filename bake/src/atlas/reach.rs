@@ -14,10 +14,10 @@
 //! * No edge has a wall: plain weights.
 //! * Two opposite edges have one: it runs across, and the two texels on the point's side remain.
 //! * Two edges that meet have one: it cuts off the texel between them. On its side of the wall that texel counts
-//!   alone, on the other side the other three. Where it turns a corner along rows and
-//!   columns, that texel's side is the rectangle between it and the two places where the wall meets the edges. At an
-//!   angle all that is known is that the wall lies within the circle around them (Thales' circle: a right angle lies on
-//!   it): within that the darkest of the four counts, outside the other three.
+//!   alone, on the other side the other three. Where it turns a corner along rows and columns, that texel's side is the
+//!   rectangle between it and the two places where the wall meets the edges. At an angle all that is known is that the
+//!   wall lies within the circle around them (Thales' circle: a right angle lies on it): within that the darkest of the
+//!   four counts, outside the other three.
 //! * One edge has one: the wall ends within the footprint. On that edge one texel counts, on the opposite edge both do,
 //!   and in between they are blended. Between two walls that are well apart it is dark: a corner of a room narrower
 //!   than a texel.
