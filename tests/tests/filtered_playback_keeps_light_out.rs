@@ -204,8 +204,8 @@ fn seen_on_ground(stage: &Stage, page: &Page, moment: &Moment, [x, z]: [f64; 2])
     page.sun_visibility(page_uv, Vec3::Y, Filter::Bilinear, moment)
 }
 
-/// Around the southern corners of boxes at noon, wherever they lie between texels of 25 cm and whether or not they are
-/// turned: nothing is dark a little away from them.
+/// B6: around the southern corners of boxes at noon, wherever they lie between texels of 25 cm and whether or not they
+/// are turned, nothing is dark a little away from them.
 #[test]
 fn no_dark_texel_lies_at_the_foot_of_a_boxs_corner() {
     let [a, b, c, d] = [[-9.0f32, -9.0], [-9.0, 9.0], [9.0, 9.0], [9.0, -9.0]].map(|[x, z]| Vec3::new(x, 0.0, z));
