@@ -56,7 +56,7 @@ impl Explain for BakeError {
             Self::TooLarge(error) => error.class(),
             Self::Write(error) => error.class(),
             Self::TwoLamps | Self::LampEngine(_) | Self::Objects(_) => ErrorClass::Usage,
-            Self::Memory { .. } => ErrorClass::BadInput,
+            Self::Memory { .. } | Self::PageTooSmall { .. } => ErrorClass::BadInput,
             Self::Threads { .. } | Self::NoExr => ErrorClass::Unavailable,
             Self::Cancelled => ErrorClass::Cancelled,
         }
@@ -86,6 +86,7 @@ impl Explain for BakeError {
                 let smaller = smaller.iter().map(|&setting| Remedy::Lower(setting));
                 Some(Remedy::AnyOf(smaller.chain([Remedy::Raise(Setting::MaxMemory)]).collect()))
             }
+            Self::PageTooSmall { remedy, .. } => Some(remedy.clone()),
             Self::Threads { .. } => Some(Remedy::Lower(Setting::Threads)),
             Self::NoExr => Some(Remedy::any([Remedy::Omit(Setting::Exr), Remedy::Omit(Setting::LossMap)])),
         }

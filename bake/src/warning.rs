@@ -53,12 +53,14 @@ pub enum Warning {
         /// Whether everything is left out, and nothing is drawn either.
         is_empty: bool,
     },
-    /// A mesh has too many charts for a page, so charts are closer together than asked.
+    /// A mesh does not fit a page, so charts are closer together than asked.
     #[error(
-        "a mesh has too many charts for a page of {page_size_texels} texels with a padding of {asked_texels}: \
-         it was baked with a padding of {used_texels}"
+        "{misfit} of {page_size_texels} texels with a padding of {asked_texels}: it was baked with a padding of \
+         {used_texels}"
     )]
     PaddingReduced {
+        /// What does not fit, up to the word page or pages.
+        misfit: String,
         /// Edge of the page, in texels.
         page_size_texels: u32,
         /// Padding asked for, in texels.
@@ -66,9 +68,13 @@ pub enum Warning {
         /// Padding it came to, in texels.
         used_texels: u32,
     },
-    /// A mesh has too many charts for a page, so pages are larger than asked.
-    #[error("a mesh has too many charts for a page of {asked_texels} texels: it was baked on pages of {used_texels}")]
+    /// A mesh does not fit a page, so pages are larger than asked.
+    #[error("{misfit} of {asked_texels} texels: it was baked on pages of {used_texels}")]
     PageEnlarged {
+        /// What does not fit, up to the word page or pages.
+        misfit: String,
+        /// What would make it smaller.
+        smaller: Vec<Remedy>,
         /// Edge asked for, in texels.
         asked_texels: u32,
         /// Edge it came to, in texels.
@@ -140,19 +146,21 @@ pub enum Warning {
         /// The materials' labels, each once.
         materials: Vec<String>,
     },
-    /// Objects have hardly any texels.
+    /// Objects are hardly wider than the texels on them or around them.
     #[error(
-        "{} narrower than two texels of {}: {}; shadows on them are blurred or lost",
+        "{} narrower than two texels of {}, {}: {}; {} blurred or lost",
         if *count == 1 { "an object is".to_owned() } else { format!("{count} objects are") },
         length(*texel_m),
-        first_of(objects, 3) + if *count > objects.len() { " and others" } else { "" }
+        either(*count as u64, "its own or those around it", "their own or those around them"),
+        first_of(objects, 3) + if *count > objects.len() { " and others" } else { "" },
+        either(*count as u64, "its shadow is", "their shadows are")
     )]
     Narrow {
         /// How many.
         count: usize,
         /// Texts that select the narrowest of them ([`crate::scene::Selection`]), at least one.
         objects: Vec<String>,
-        /// Width of a texel of the narrowest, metres.
+        /// Width of a texel on the narrowest or, if that is wider, of one around it, metres.
         texel_m: f64,
         /// A density at which the narrowest would be eight texels wide, texels a metre.
         texels_per_metre: f64,
@@ -266,10 +274,10 @@ impl Warning {
             Self::NothingToBake { is_empty: false } => {
                 Some(Remedy::AnyOf([Setting::NoReceive, Setting::LeaveOut].map(Remedy::Fewer).into()))
             }
-            Self::PageEnlarged { used_texels, .. } => Some(Remedy::any([
-                Remedy::Set(Setting::PageSize, used_texels.to_string()),
-                Remedy::Do("simplify the mesh"),
-            ])),
+            Self::PageEnlarged { smaller, used_texels, .. } => {
+                let page = Remedy::Set(Setting::PageSize, used_texels.to_string());
+                Some(Remedy::AnyOf([page].into_iter().chain(smaller.iter().cloned()).collect()))
+            }
             Self::ManyPages { .. } | Self::LessDensity { .. } | Self::DensityGiven { .. } => {
                 Some(Remedy::Raise(Setting::PageSize))
             }
@@ -283,8 +291,9 @@ impl Warning {
             }
             Self::Narrow { objects, texels_per_metre, .. } => {
                 let name = objects.first().map(String::as_str).unwrap_or_default();
-                let value = format!("{name}={}", texels_per_metre.ceil());
-                Some(Remedy::Set(Setting::ObjectDensity, in_quotes(&value)))
+                let value = in_quotes(&format!("{name}={}", texels_per_metre.ceil()));
+                let set = |setting| Remedy::Set(setting, value.clone());
+                Some(Remedy::AnyOf([Setting::ObjectDensityAround, Setting::ObjectDensity].map(set).into()))
             }
             Self::Merged { layer_cap, .. } if *layer_cap as u64 >= MOST_LAYERS => None,
             Self::Merged { needed_layers, .. } => {

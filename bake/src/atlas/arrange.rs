@@ -141,8 +141,19 @@ impl AtlasMesh {
 
     /// About how many texels it gets in a scene of this density.
     pub fn texels(&self, texels_per_metre: f64) -> f64 {
-        let (area_m2, own_texels) = self.area_and_own_texels();
-        area_m2 * texels_per_metre * texels_per_metre + own_texels
+        self.instances.iter().map(|instance| self.texels_of(instance, texels_per_metre)).sum()
+    }
+
+    /// The instance that gets most of them, by its index in the scene.
+    pub fn most_asking(&self, texels_per_metre: f64) -> usize {
+        let texels = |instance: &&AtlasInstance| self.texels_of(instance, texels_per_metre);
+        let most = self.instances.iter().max_by(|a, b| texels(a).total_cmp(&texels(b)));
+        most.map_or(0, |instance| instance.index)
+    }
+
+    fn texels_of(&self, instance: &AtlasInstance, texels_per_metre: f64) -> f64 {
+        let texels = |(area_m2, own): (f64, Option<f64>)| area_m2 * own.unwrap_or(texels_per_metre).powi(2);
+        self.parts(instance).into_iter().map(texels).sum()
     }
 
     fn area_of_instance_m2(&self, instance: &AtlasInstance) -> f64 {

@@ -2,6 +2,33 @@
 
 use thiserror::Error;
 
+/// What does not fit pages, however few texels the scene has a metre. Its text ends with the word page or pages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Misfit {
+    /// A mesh has too many charts.
+    #[error("the mesh of instance {instance} has {charts} charts, too many for a page")]
+    Charts {
+        /// The mesh's first instance ([`crate::scene::Scene::instances`]).
+        instance: usize,
+        /// How many it has.
+        charts: usize,
+    },
+    /// A mesh is too large at a density of its own.
+    #[error("at the density asked for, the mesh of instance {instance} is too large for a page")]
+    Density {
+        /// The instance that asks for most texels.
+        instance: usize,
+    },
+    /// All meshes together have too many charts.
+    #[error("{charts} charts do not fit {pages} pages")]
+    Pages {
+        /// How many they have.
+        charts: usize,
+        /// Most pages that there may be.
+        pages: u32,
+    },
+}
+
 /// Why there is no atlas.
 #[derive(Debug, Error, PartialEq)]
 pub enum AtlasError {
@@ -31,10 +58,10 @@ pub enum AtlasError {
         most: u64,
     },
     /// Charts do not fit at any density.
-    #[error("{charts} charts with {padding} texels around each do not fit a page of {page_size} texels at any density")]
+    #[error("{misfit} of {page_size} texels, with {padding} texels around each chart")]
     PageTooSmall {
-        /// Number of charts.
-        charts: usize,
+        /// What does not fit.
+        misfit: Misfit,
         /// Texels around each chart.
         padding: u32,
         /// Side of a page, in texels.

@@ -35,7 +35,7 @@ mod zones;
 
 pub(crate) use around::Around;
 pub use build::build;
-pub use error::AtlasError;
+pub use error::{AtlasError, Misfit};
 pub use footprint::{Filtered, Footprint};
 pub use gutter::{GutterTexel, gutter};
 pub use reach::{HiddenEnd, OPEN, Reach, is_open, wall_code};

@@ -4,7 +4,7 @@
 //! everything fits. Every guess packs again, which [`super::strip`] makes fast enough.
 
 use super::arrange::{Arrangement, AtlasMesh, AtlasPlan};
-use super::error::AtlasError;
+use super::error::{AtlasError, Misfit};
 use super::meter::{ProgressMeter, UNWRAP_SHARE};
 use super::{AtlasSettings, Density};
 use crate::warning::Warning;
@@ -57,7 +57,7 @@ fn check_texels(settings: &AtlasSettings, texels_per_metre: f64, items: &[AtlasM
     if texels as u64 <= settings.most_texels {
         return Ok(());
     }
-    let each = items.iter().map(|item| (item.texels(texels_per_metre), item.instances[0].index));
+    let each = items.iter().map(|item| (item.texels(texels_per_metre), item.most_asking(texels_per_metre)));
     let (most_asked, instance) = each.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
     Err(AtlasError::TooDense {
         instance,
@@ -145,6 +145,19 @@ fn cancelled_or_too_small(settings: &AtlasSettings, items: &[AtlasMesh], meter: 
     if !meter.reach(0.0) {
         return AtlasError::Cancelled;
     }
-    let charts = items.iter().map(AtlasMesh::chart_count).sum();
-    AtlasError::PageTooSmall { charts, padding: settings.padding_texels, page_size: settings.page_size_texels }
+    let (padding, page_size) = (settings.padding_texels, settings.page_size_texels);
+    AtlasError::PageTooSmall { misfit: misfit(&arrangement(settings, items), items), padding, page_size }
+}
+
+/// What does not fit, although the scene's own density is next to nothing.
+fn misfit(arrangement: &Arrangement, items: &[AtlasMesh]) -> Misfit {
+    // Texels a metre: everything without a density of its own is as small as can be.
+    const NEXT_TO_NOTHING: f64 = 1e-6;
+    let fits = |item: usize, share: f64| arrangement.fits_alone(item, NEXT_TO_NOTHING, share);
+    let charts = || items.iter().map(AtlasMesh::chart_count);
+    match (0..items.len()).find(|&item| !fits(item, 1.0)) {
+        None => Misfit::Pages { charts: charts().sum(), pages: MOST_PAGES },
+        Some(item) if fits(item, LEAST_SHARE) => Misfit::Density { instance: items[item].most_asking(NEXT_TO_NOTHING) },
+        Some(item) => Misfit::Charts { instance: items[item].instances[0].index, charts: items[item].chart_count() },
+    }
 }

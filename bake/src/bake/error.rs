@@ -1,12 +1,12 @@
 //! Why a bake can fail.
 
 use super::memory::BYTES_PER_SAMPLE;
-use crate::atlas::AtlasError;
+use crate::atlas::{AtlasError, Misfit};
 use crate::disk::write::WriteError;
 use crate::glb::GlbTooLarge;
 use crate::lamp::{LampError, LampFileError};
-use crate::remedy::Setting;
-use crate::scene::{LoadError, ObjectError, Role, Scene};
+use crate::remedy::{Remedy, Setting};
+use crate::scene::{LoadError, ObjectError, Scene};
 use crate::settings::EngineChoice;
 use crate::sun::{DayError, KeyedError, LightError};
 
@@ -64,6 +64,18 @@ pub enum BakeError {
         /// How much is allowed, in MiB.
         allowed_mib: u64,
     },
+    /// No page that is allowed holds what must lie on one.
+    #[error("{misfit} of {page_size_texels} texels, with a padding of {padding_texels}")]
+    PageTooSmall {
+        /// What does not fit, up to the word page or pages.
+        misfit: String,
+        /// What would help.
+        remedy: Remedy,
+        /// Edge of a page that was asked for, in texels.
+        page_size_texels: u32,
+        /// Padding that was asked for, in texels.
+        padding_texels: u32,
+    },
     /// The threads cannot be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -84,18 +96,71 @@ impl BakeError {
             AtlasError::Cancelled => Self::Cancelled,
             AtlasError::TooDense { instance, of_instance, texels, most } => Self::Memory {
                 what: format!(
-                    "the density asked for (about {texels} texels, {of_instance} of them for {})",
-                    scene.meshes[scene.instances[instance].mesh].label()
+                    "the density asked for ({} texels, {} of them for {})",
+                    about(texels),
+                    about(of_instance),
+                    mesh_label(scene, instance)
                 ),
-                smaller: match &scene.instances[instance].role {
-                    Role { texels_per_metre: Some(_), .. } => vec![Setting::ObjectDensity],
-                    Role { texels_per_metre_around: Some(_), .. } => vec![Setting::ObjectDensityAround],
-                    _ => vec![Setting::TexelsPerMetre],
-                },
+                smaller: vec![density_setting(scene, instance)],
                 needed_mib: texels.saturating_mul(BYTES_PER_SAMPLE) >> 20,
                 allowed_mib: most.saturating_mul(BYTES_PER_SAMPLE) >> 20,
             },
+            AtlasError::PageTooSmall { misfit, padding, page_size } => Self::PageTooSmall {
+                misfit: in_names(misfit, scene),
+                remedy: Remedy::AnyOf(
+                    [Remedy::Raise(Setting::PageSize)].into_iter().chain(smaller(misfit, scene)).collect(),
+                ),
+                page_size_texels: page_size,
+                padding_texels: padding,
+            },
             other => Self::Atlas(other),
         }
+    }
+}
+
+/// What messages call the mesh of an instance.
+fn mesh_label(scene: &Scene, instance: usize) -> String {
+    scene.meshes[scene.instances[instance].mesh].label()
+}
+
+/// The setting that gives an instance its density.
+fn density_setting(scene: &Scene, instance: usize) -> Setting {
+    let has_own = scene.instances[instance].role.texels_per_metre.is_some();
+    let is_around = scene.instances.iter().any(|other| other.role.texels_per_metre_around.is_some());
+    match (has_own, is_around) {
+        (true, _) => Setting::ObjectDensity,
+        (false, true) => Setting::ObjectDensityAround,
+        (false, false) => Setting::TexelsPerMetre,
+    }
+}
+
+/// What does not fit pages, with the names of its objects.
+pub(super) fn in_names(misfit: Misfit, scene: &Scene) -> String {
+    match misfit {
+        Misfit::Charts { instance, charts } => {
+            format!("mesh {} has {charts} charts, too many for a page", mesh_label(scene, instance))
+        }
+        Misfit::Density { instance } => {
+            format!("at the density asked for, mesh {} is too large for a page", mesh_label(scene, instance))
+        }
+        Misfit::Pages { .. } => misfit.to_string(),
+    }
+}
+
+/// What makes it smaller.
+pub(super) fn smaller(misfit: Misfit, scene: &Scene) -> Vec<Remedy> {
+    match misfit {
+        Misfit::Charts { .. } => vec![Remedy::Lower(Setting::Padding), Remedy::Do("simplify the mesh")],
+        Misfit::Density { instance } => vec![Remedy::Lower(density_setting(scene, instance))],
+        Misfit::Pages { .. } => vec![Remedy::Lower(Setting::TexelsPerMetre), Remedy::Do("simplify the scene")],
+    }
+}
+
+/// A number of texels, in words where it is beyond counting.
+fn about(texels: u64) -> String {
+    match texels {
+        0..1_000_000_000 => format!("about {texels}"),
+        1_000_000_000..1_000_000_000_000 => format!("about {:.1} billion", texels as f64 * 1e-9),
+        _ => "more than a thousand billion".to_owned(),
     }
 }

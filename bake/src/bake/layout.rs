@@ -1,16 +1,16 @@
 //! The atlas of a bake, within the memory that it may take.
 
-use super::error::BakeError;
+use super::error::{BakeError, in_names, smaller};
 use super::memory::{BYTES_PER_SAMPLE, bytes_needed};
-use crate::atlas::{self, Atlas, AtlasError, AtlasSettings};
+use crate::atlas::{self, Atlas, AtlasError, AtlasSettings, Misfit};
 use crate::progress::{BakeStep, Progress};
 use crate::remedy::Setting;
 use crate::scene::Scene;
 use crate::settings::BakeSettings;
 use crate::warning::Warning;
 
-/// Unwraps as asked or, where a mesh has too many charts for a page, with less padding or on larger pages. Gives the
-/// settings that were used.
+/// Unwraps as asked or, where a mesh does not fit a page, with less padding or on larger pages. Gives the settings that
+/// were used.
 pub(crate) fn fitting_atlas(
     scene: &Scene,
     asked: &BakeSettings,
@@ -18,15 +18,14 @@ pub(crate) fn fitting_atlas(
     progress: &dyn Progress,
 ) -> Result<(Atlas, BakeSettings), BakeError> {
     let mut settings = asked.clone();
+    let mut first_misfit = None;
     loop {
-        let error = match unwrap(scene, &settings, progress) {
+        let misfit = match unwrap(scene, &settings, progress) {
             Ok(atlas) => {
-                if settings != *asked {
-                    warnings.push(changed_settings(&settings, asked));
-                }
+                warnings.extend(first_misfit.map(|misfit| changed_settings(&settings, asked, misfit, scene)));
                 return Ok((atlas, settings));
             }
-            Err(error @ AtlasError::PageTooSmall { .. }) => error,
+            Err(AtlasError::PageTooSmall { misfit, .. }) => *first_misfit.get_or_insert(misfit),
             Err(error) => return Err(BakeError::of_atlas(error, scene)),
         };
         if settings.padding_texels > 1 {
@@ -37,7 +36,8 @@ pub(crate) fn fitting_atlas(
         }
         let is_possible = settings.page_size_texels <= LARGEST_PAGE_TEXELS;
         if !is_possible || check_memory(scene, &settings, settings.page_size_texels).is_err() {
-            return Err(BakeError::of_atlas(error, scene));
+            let (padding, page_size) = (asked.padding_texels, asked.page_size_texels);
+            return Err(BakeError::of_atlas(AtlasError::PageTooSmall { misfit, padding, page_size }, scene));
         }
     }
 }
@@ -46,12 +46,15 @@ pub(crate) fn fitting_atlas(
 const LARGEST_PAGE_TEXELS: u32 = 16_384;
 
 /// A warning about settings that could not be kept.
-fn changed_settings(settings: &BakeSettings, asked: &BakeSettings) -> Warning {
+fn changed_settings(settings: &BakeSettings, asked: &BakeSettings, misfit: Misfit, scene: &Scene) -> Warning {
     let (asked_texels, used_texels) = (asked.page_size_texels, settings.page_size_texels);
+    let smaller = smaller(misfit, scene);
+    let misfit = in_names(misfit, scene);
     if asked_texels != used_texels {
-        return Warning::PageEnlarged { asked_texels, used_texels };
+        return Warning::PageEnlarged { misfit, smaller, asked_texels, used_texels };
     }
     Warning::PaddingReduced {
+        misfit,
         page_size_texels: asked_texels,
         asked_texels: asked.padding_texels,
         used_texels: settings.padding_texels,

@@ -4,6 +4,7 @@ use crate::atlas::Atlas;
 use crate::scene::{Scene, each_once, label_of};
 use crate::warning::Warning;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
 /// Width in texels below which an object is narrow.
@@ -13,22 +14,71 @@ const GOOD_TEXELS: f64 = 8.0;
 /// Most objects that are named.
 const MOST_NAMED: usize = 3;
 
-/// A word about objects that are narrower than two texels, if there are any.
+/// A word about objects that are narrower than two texels, their own or those around them, if there are any.
 pub(super) fn narrow_warning(scene: &Scene, atlas: &Atlas) -> Option<Warning> {
-    let widths_m = atlas.texel_widths_m(scene);
-    let texel_m = |instance: usize| widths_m[instance];
-    let received = (0..scene.instances.len()).filter(|&instance| scene.receives(instance));
-    let widths = received.map(|instance| (width_m(scene, instance), instance));
-    let mut narrow: Vec<_> = widths.filter(|&(width_m, i)| width_m < NARROW_TEXELS * texel_m(i)).collect();
+    let texels = TexelWidths::new(scene, atlas);
+    let is_narrow = |&(width_m, _, texel_m): &(f64, usize, f64)| width_m < NARROW_TEXELS * texel_m;
+    let measured = (0..scene.instances.len()).into_par_iter().filter(|&instance| scene.is_there(instance));
+    let measured = measured.map(|instance| {
+        let width_m = width_m(scene, instance);
+        (width_m, instance, texels.on_or_around(scene, instance, width_m))
+    });
+    let mut narrow: Vec<_> = measured.filter(is_narrow).collect();
     narrow.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let &(least_m, least) = narrow.first()?;
-    let label = |&(_, instance): &(f64, usize)| label_of(scene, &BTreeSet::from([instance as u32])).1;
+    let &(least_m, _, texel_m) = narrow.first()?;
+    let label = |&(_, instance, _): &(f64, usize, f64)| label_of(scene, &BTreeSet::from([instance as u32])).1;
     Some(Warning::Narrow {
         count: narrow.len(),
         objects: each_once(narrow.iter().take(MOST_NAMED).map(label).collect()),
-        texel_m: texel_m(least),
+        texel_m,
         texels_per_metre: GOOD_TEXELS / least_m.max(1e-6),
     })
+}
+
+/// Widths of the texels of all that has some, and where they lie.
+struct TexelWidths {
+    /// Width in metres, of those that have texels.
+    of_instances: Vec<Option<f64>>,
+    widest_m: f64,
+    boxes: Vec<[DVec3; 2]>,
+}
+
+impl TexelWidths {
+    fn new(scene: &Scene, atlas: &Atlas) -> Self {
+        let widths_m = atlas.texel_widths_m(scene).into_iter().enumerate();
+        let has_texels = |instance: usize| scene.receives(instance) && !atlas.placements[instance].is_empty();
+        let of_instances: Vec<_> = widths_m.map(|(i, width_m)| Some(width_m).filter(|_| has_texels(i))).collect();
+        let widest_m = of_instances.iter().flatten().copied().fold(0.0, f64::max);
+        let boxes = (0..scene.instances.len()).into_par_iter().map(|i| box_of(scene, i)).collect();
+        Self { of_instances, widest_m, boxes }
+    }
+
+    /// Width of the widest texels of an object and, if it casts a shadow, of what reaches into its box, made larger by
+    /// the object's size on all sides: there its shadow falls.
+    fn on_or_around(&self, scene: &Scene, instance: usize, width_m: f64) -> f64 {
+        let own_m = self.of_instances[instance].unwrap_or(0.0);
+        // Triangles around it have it; those farther away do not count.
+        if let Some(texels_per_metre) = scene.instances[instance].role.texels_per_metre_around {
+            return own_m.max(1.0 / texels_per_metre);
+        }
+        if !scene.casts(instance) || width_m >= NARROW_TEXELS * self.widest_m {
+            return own_m;
+        }
+        let [low, high] = self.boxes[instance];
+        let reach_m = (high - low).max_element();
+        let [low, high] = [low - reach_m, high + reach_m];
+        let is_near = |[from, to]: &[DVec3; 2]| from.cmple(high).all() && to.cmpge(low).all();
+        let near = self.boxes.iter().zip(&self.of_instances).filter(|(place, _)| is_near(place));
+        near.filter_map(|(_, width_m)| *width_m).fold(own_m, f64::max)
+    }
+}
+
+/// Least and greatest coordinates of an instance, bake space.
+fn box_of(scene: &Scene, instance: usize) -> [DVec3; 2] {
+    let instance = &scene.instances[instance];
+    let positions = scene.meshes[instance.mesh].positions.iter();
+    let placed = positions.map(|p| instance.bake_from_object.transform_point3(p.as_dvec3()));
+    placed.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 /// The middle one of an instance's three extents along its own axes: the width of a plank, of a wire its thickness.
@@ -52,7 +102,7 @@ mod tests {
     use glam::{Vec2, Vec3};
 
     #[test]
-    fn what_is_narrower_than_two_texels_is_named_unless_it_has_its_own_density() {
+    fn what_is_narrower_than_two_texels_is_named_until_texels_on_it_and_around_it_are_dense() {
         let material = |name: &str| crate::scene::Material { name: Some(name.into()), ..opaque() };
         let mut scene = SceneBuilder::new()
             .soup_of(&floor(Vec2::splat(-50.0), Vec2::splat(50.0), 0.0), material("ground"))
@@ -64,7 +114,13 @@ mod tests {
             panic!("a plank of half a metre has one texel across")
         };
         assert_eq!((objects, texels_per_metre), (vec!["plank".to_owned()], 16.0));
+        // Its own texels are narrow now, and those of the ground, where its shadow falls, are not.
         scene.instances[1].role.texels_per_metre = Some(16.0);
+        assert!(matches!(warning(&scene), Some(Warning::Narrow { count: 1, texel_m, .. }) if texel_m > 0.4));
+        scene.instances[1].role.casts = false;
+        assert_eq!(warning(&scene), None);
+        // Dense only around it: the ground's two triangles reach there.
+        scene.instances[1].role = crate::scene::Role { texels_per_metre_around: Some(16.0), ..Default::default() };
         assert_eq!(warning(&scene), None);
     }
 }

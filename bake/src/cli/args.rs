@@ -322,9 +322,9 @@ pub struct InspectArgs {
 pub struct TexelsArgs {
     /// The set's folder.
     pub set: PathBuf,
-    /// How many texels, at most all that are covered.
-    #[arg(long, value_name = "N", default_value_t = 100)]
-    pub count: usize,
+    /// How many texels, 1 or more; at most all that are covered.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..))]
+    pub count: u64,
     /// Which texels: the same seed draws the same ones.
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,

@@ -5,6 +5,7 @@ use super::summary;
 use std::path::Path;
 use sunbake::atlas::Density;
 use sunbake::console::{Command, Failure, ProgressLine, print, print_json, warn_all};
+use sunbake::lamp::is_lamp;
 use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
 use sunbake::sun::KeyedError;
 use sunbake::{BakeError, BakeReport};
@@ -68,9 +69,9 @@ fn explain(args: &BakeArgs, settings: &BakeSettings, progress: &ProgressLine) ->
 fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     let sun = sun(&args.sun)?;
     let preset = match args.preset {
-        Preset::Draft => BakeSettings::draft(sun),
-        Preset::Standard => BakeSettings::standard(sun),
-        Preset::Final => BakeSettings::final_quality(sun),
+        Preset::Draft => BakeSettings::draft(sun.clone()),
+        Preset::Standard => BakeSettings::standard(sun.clone()),
+        Preset::Final => BakeSettings::final_quality(sun.clone()),
     };
     let cost = &args.cost;
     let engine = cost.engine.unwrap_or(preset.engine);
@@ -84,6 +85,9 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         return Err(Failure::usage(format!("{flag} is about times and --only asks for none: add intervals to --only")));
     }
     let lamp = args.lamp.lamp.as_deref().map(|file| path_file(file, "--lamp")).transpose()?;
+    if matches!(&sun, SunRequest::Keyed { json, .. } if is_lamp(json)) {
+        check_lamp_alone(args, bakes_intervals)?;
+    }
     Ok(BakeSettings {
         lamp,
         objects: args.objects.wishes_with(&args.densities),
@@ -103,6 +107,23 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         max_memory_bytes: cost.max_memory.unwrap_or(preset.max_memory_bytes),
         ..preset
     })
+}
+
+/// Refuses what is about a sun where the path is a lamp's.
+fn check_lamp_alone(args: &BakeArgs, bakes_intervals: bool) -> Result<(), Failure> {
+    let of_sun = [(args.cost.lanes > 1, "--lanes"), (args.sun.day.north.is_some(), "--north")];
+    if let Some((_, option)) = of_sun.into_iter().find(|(is_given, _)| *is_given) {
+        return Err(Failure::usage(format!(
+            "{option} is about the sun, and --path is of a lamp that is baked instead: leave {option} out, or give the \
+             lamp with --lamp"
+        )));
+    }
+    if !bakes_intervals {
+        return Err(Failure::usage(
+            "--path is of a lamp and --only asks for no times: add intervals to --only, or leave --path out",
+        ));
+    }
+    Ok(())
 }
 
 /// Most rays of a texel that has an error to keep, unless told otherwise.

@@ -55,8 +55,9 @@ pub fn parse_window(text: &str) -> Result<[f64; 2], String> {
 }
 
 pub fn parse_density(text: &str) -> Result<f64, String> {
-    let valid = |x: &f64| x.is_finite() && *x > 0.0;
-    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is not a positive number of texels per metre"))
+    let valid = |x: &f64| sunbake::scene::is_density(*x);
+    let wrong = || format!("`{text}` is not a number of texels per metre from 0.000001 to 1000000");
+    text.parse().ok().filter(valid).ok_or_else(wrong)
 }
 
 pub fn parse_engine(text: &str) -> Result<EngineChoice, String> {

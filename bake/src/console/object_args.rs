@@ -67,7 +67,7 @@ impl ObjectArgs {
 
 /// Reads `NAME=X`. A name may hold a `=` itself.
 fn parse_density_of(text: &str) -> Result<(String, f64), String> {
-    let wrong = || format!("`{text}` is no name with a positive number of texels per metre: give NAME=X");
+    let wrong = || format!("`{text}` is no name with texels per metre: give NAME=X, with X from 0.000001 to 1000000");
     let (name, density) = text.rsplit_once('=').ok_or_else(wrong)?;
     let density = density.parse().ok().filter(|&density| crate::scene::is_density(density)).ok_or_else(wrong)?;
     Ok((name.to_owned(), density))

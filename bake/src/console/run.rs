@@ -32,7 +32,7 @@ impl Command {
         if std::env::args_os().len() < 2 {
             return self.report(|| print(basics));
         }
-        match Options::try_parse() {
+        match parse() {
             Ok(options) => self.report(|| work(options)),
             Err(error) => self.explain::<Options>(&error),
         }
@@ -69,7 +69,20 @@ impl Command {
     }
 }
 
-/// What is wrong with a command line, in one line: what clap says without its usage.
+/// Reads the options that the process was started with. Negative numbers are values, so that it is said which are
+/// allowed.
+fn parse<Options: Parser>() -> Result<Options, clap::Error> {
+    let negative = |arg: clap::Arg| {
+        let takes_value = !arg.is_positional() && arg.get_action().takes_values();
+        if takes_value { arg.allow_negative_numbers(true) } else { arg }
+    };
+    let mut command = Options::command().mut_subcommands(|command| command.mut_args(negative));
+    let mut matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    Options::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+}
+
+/// What is wrong with a command line, in one line: what clap says without its usage, and the standard library's words
+/// for numbers in plainer ones.
 fn mistake(text: &str) -> String {
     let is_told = |part: &&str| !["Usage:", "For more information"].iter().any(|start| part.starts_with(start));
     let parts = text.split("\n\n").map(str::trim).filter(is_told).filter(|part| !part.is_empty());
@@ -77,7 +90,14 @@ fn mistake(text: &str) -> String {
         let part = part.trim_start_matches("error: ").trim_start_matches("tip: ");
         part.split_whitespace().collect::<Vec<_>>().join(" ")
     };
-    parts.map(line).collect::<Vec<_>>().join("; ")
+    let text = parts.map(line).collect::<Vec<_>>().join("; ");
+    let plainer = [
+        ("invalid digit found in string", "it is not a whole number"),
+        ("cannot parse integer from empty string", "it is empty"),
+        ("number too large to fit in target type", "it is too large"),
+        ("number too small to fit in target type", "it is too small"),
+    ];
+    plainer.into_iter().fold(text, |text, (from, to)| text.replace(from, to))
 }
 
 /// Sets the number of threads of everything that is done without a thread pool of its own; 0 is one per core.
@@ -108,5 +128,8 @@ mod tests {
         let text = "error: unexpected argument '--forse' found\n\n  tip: a similar argument exists: '--force'\n\n\
                     Usage: sunbake bake --force <SCENE>\n\nFor more information, try '--help'.\n";
         assert_eq!(mistake(text), "unexpected argument '--forse' found; a similar argument exists: '--force'");
+        let number = "a".parse::<u32>().unwrap_err();
+        let text = format!("error: invalid value 'a' for '--size <N>': {number}\n");
+        assert_eq!(mistake(&text), "invalid value 'a' for '--size <N>': it is not a whole number");
     }
 }

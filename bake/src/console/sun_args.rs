@@ -6,6 +6,11 @@ use crate::settings::SunRequest;
 use crate::sun::{Date, DayRequest, parse_place};
 use clap::Args;
 
+fn parse_north(text: &str) -> Result<f64, String> {
+    let valid = |degrees: &f64| degrees.abs() <= 360.0;
+    text.parse().ok().filter(valid).ok_or_else(|| format!("`{text}` is no direction: give degrees from -360 to 360"))
+}
+
 /// The sun over a scene.
 #[derive(Debug, Clone, Args)]
 pub struct SunArgs {
@@ -22,8 +27,8 @@ pub struct SunArgs {
     /// Europe/Vienna, with its summer time. [default: the whole hour nearest to the place]
     #[arg(long, value_name = "H|ZONE", value_parser = parse_clock_offset, allow_hyphen_values = true)]
     pub utc_offset: Option<ClockOffset>,
-    /// Degrees that north is turned from -Z towards +X. [default: 0]
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    /// Degrees that north is turned from -Z towards +X, -360 to 360. [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = parse_north, allow_hyphen_values = true)]
     pub north: Option<f64>,
 }
 

@@ -405,5 +405,6 @@ fn total_s(seconds: &StepSeconds) -> f64 {
 /// A note where a page had to be larger than asked for.
 fn page_note(manifest: &Manifest, settings: &BakeSettings) -> Option<String> {
     let edge = manifest.atlases.iter().map(|atlas| atlas.width.max(atlas.height)).max()?;
-    (edge > settings.page_size_texels).then(|| format!("a mesh has too many charts: baked on a page of {edge}"))
+    (edge > settings.page_size_texels)
+        .then(|| format!("a mesh does not fit the page asked for: baked on a page of {edge}"))
 }

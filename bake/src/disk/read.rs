@@ -55,7 +55,7 @@ impl BakedSet {
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// A file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}; put it back, or bake the scene again", path.display())]
     Io {
         /// The file that cannot be read.
         path: PathBuf,

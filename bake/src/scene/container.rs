@@ -4,6 +4,7 @@
 //! bytes, unknown chunks and a byte order mark are ignored.
 
 use super::{LoadError, limits::MemoryBudget};
+use crate::disk::read::MANIFEST_FILE;
 use serde_json::Value;
 use std::{fs::File, io::Read, ops::Range, path::Path};
 
@@ -16,11 +17,13 @@ pub(super) struct Container {
 }
 
 /// Reads a regular file completely, if it fits into the budget.
-pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &'static str) -> Result<Vec<u8>, LoadError> {
+pub(super) fn read_file(path: &Path, budget: &MemoryBudget, advice: &str) -> Result<Vec<u8>, LoadError> {
     let fail = |cause: std::io::Error| LoadError::read(path, &cause, advice);
     let meta = std::fs::metadata(path).map_err(fail)?;
     if !meta.is_file() {
         let cause = if meta.is_dir() { "it is a folder" } else { "it is not a regular file" };
+        let is_set = meta.is_dir() && path.join(MANIFEST_FILE).is_file();
+        let advice = if is_set { "it holds a baked set: give the scene that it was baked of" } else { advice };
         return Err(LoadError::read(path, &cause, advice));
     }
     budget.take(meta.len(), 1, || format!("{}", path.display()))?;

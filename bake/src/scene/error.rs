@@ -14,7 +14,7 @@ pub enum LoadError {
         /// The operating system's message.
         cause: String,
         /// What to do next.
-        advice: &'static str,
+        advice: String,
     },
     /// The file is not glTF.
     #[error(
@@ -171,7 +171,7 @@ impl LoadError {
         }
     }
 
-    pub(super) fn read(path: &Path, cause: &dyn ToString, advice: &'static str) -> Self {
-        Self::Read { path: path.to_owned(), cause: cause.to_string(), advice }
+    pub(super) fn read(path: &Path, cause: &dyn ToString, advice: &str) -> Self {
+        Self::Read { path: path.to_owned(), cause: cause.to_string(), advice: advice.to_owned() }
     }
 }

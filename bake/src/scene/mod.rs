@@ -67,7 +67,7 @@ pub(crate) use names::{each_once, first_of, label_of};
 pub use objects::{ObjectError, ObjectWishes, Wish};
 pub use resources::sha256;
 pub use roles::Role;
-pub(crate) use roles::is_density;
+pub use roles::is_density;
 pub use shading::ShadingNormals;
 pub use smooth::SmoothPoint;
 

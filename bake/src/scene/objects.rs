@@ -104,8 +104,8 @@ pub enum ObjectError {
         /// Another.
         second: f64,
     },
-    /// A density is not a number above zero.
-    #[error("{name:?} is to have {density} texels a metre, which is no number above zero")]
+    /// A density makes no sense ([`crate::scene::is_density`]).
+    #[error("{name:?} is to have {density} texels a metre: give a number from 0.000001 to 1000000")]
     Density {
         /// The name that was given.
         name: String,

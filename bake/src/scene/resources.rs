@@ -37,7 +37,8 @@ impl<'a> Fetcher<'a> {
             return decode_data_uri(data).map_err(|problem| LoadError::structure(place, problem));
         }
         let path = self.resolve(place, uri)?;
-        let bytes = read_file(&path, self.budget, "put it back beside the scene, or export the scene as one .glb")?;
+        let advice = format!("{place} names it: put it back, or export the scene as one .glb");
+        let bytes = read_file(&path, self.budget, &advice)?;
         self.hasher.update(&bytes);
         Ok(bytes)
     }

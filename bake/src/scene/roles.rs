@@ -127,7 +127,9 @@ fn wishes<T: ListItem>(doc: &Document, index: Option<usize>) -> Result<Wishes, L
         let flag = || flag(value).ok_or_else(|| wrong(format!("it is {value}, where true or false is meant")));
         let density = || {
             let density = value.as_f64().filter(|density| is_density(*density));
-            density.ok_or_else(|| wrong(format!("it is {value}, and no number of texels a metre")))
+            density.ok_or_else(|| {
+                wrong(format!("it is {value}, and no number of texels a metre from 0.000001 to 1000000"))
+            })
         };
         match key.strip_prefix(PREFIX).unwrap_or_default() {
             "leave_out" => wishes.leave_out = Some(flag()?),
@@ -167,7 +169,10 @@ fn flag(value: &Value) -> Option<bool> {
     })
 }
 
-/// Whether a number of texels a metre makes sense.
-pub(crate) fn is_density(texels_per_metre: f64) -> bool {
-    texels_per_metre.is_finite() && texels_per_metre > 0.0
+/// Texels a metre that make sense: from one in a thousand kilometres to one in a thousandth of a millimetre.
+const DENSITIES: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+
+/// Whether a number of texels a metre makes sense: from 0.000001 to 1000000.
+pub fn is_density(texels_per_metre: f64) -> bool {
+    DENSITIES.contains(&texels_per_metre)
 }

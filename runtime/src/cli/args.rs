@@ -113,7 +113,7 @@ pub struct DemoArgs {
     /// What draws the baked row: the GPU if there is one, the GPU, or the CPU.
     #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
     pub renderer: RendererChoice,
-    /// Threads; 0 is one per core.
+    /// Threads of the CPU; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
     #[command(flatten)]
@@ -165,7 +165,7 @@ pub struct LookArgs {
     /// (percentage-closer soft shadows: as wide as the penumbra), `map:cascades` (a map for each slice of the view; the
     /// same as `map`), `map:perspective` and `map:cube` (perspective shadow maps: more texels near the eye),
     /// `map:ground` (a blurred projection onto the ground) and `map:planar` (casters flattened onto the ground, and no
-    /// other shadow).
+    /// other shadow). A set's lamp keeps its baked shadows.
     ///
     /// `truth:hard` traces one ray from each pixel to the sun's centre, `truth:soft` N rays to its disc, 64 unless
     /// given: time grows with N, noise shrinks as 1/N.
@@ -212,7 +212,7 @@ pub struct LookArgs {
     /// What draws: the GPU if there is one, the GPU, or the CPU.
     #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
     pub renderer: RendererChoice,
-    /// Threads; 0 is one per core.
+    /// Threads of the CPU; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
 }

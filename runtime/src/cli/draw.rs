@@ -4,7 +4,7 @@ use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, Technique
 use super::no_effect;
 use clap::ValueEnum;
 use std::path::Path;
-use sunbake::console::{Command, Failure, ObjectArgs, SunArgs, tell, warn_all};
+use sunbake::console::{Command, Failure, ObjectArgs, SunArgs, tell, warn, warn_all};
 use sunbake::scene::LoadLimits;
 use sunbake::{BakeError, Warning};
 use sunbake_runtime::gpu::{Gpu, GpuError, Output, VolumeSettings};
@@ -151,8 +151,8 @@ pub fn stage(
         }
         if is_baked {
             return Err(Failure::usage(format!(
-                "{} is a scene, and nothing was baked for it: bake it with sunbake, or draw --technique volumes, \
-                 map or truth:hard",
+                "{} is a file and no set, so nothing was baked: bake it with sunbake, or draw --technique volumes, map \
+                 or truth:hard",
                 from.display()
             )));
         }
@@ -165,6 +165,7 @@ pub fn stage(
              --leave-out, --no-cast and --no-receive out",
         ));
     }
+    no_effect::check_sky_of_set(look)?;
     // Nothing that only looks need is read for a picture of visibility.
     let read = if output == OutputChoice::Visibility { Stage::read_without_looks } else { Stage::read };
     let stage = warned(read(from)?);
@@ -201,6 +202,9 @@ pub fn stage(
 fn plain_stage(file: &Path, sun: &SunArgs, objects: &ObjectArgs, output: OutputChoice) -> Result<Stage, Failure> {
     let mut scene = sunbake::scene::load(file, &LoadLimits { max_memory_bytes: MAX_SCENE_BYTES })?;
     objects.wishes().apply_to(&mut scene).map_err(BakeError::Objects)?;
+    if !(0..scene.instances.len()).any(|instance| scene.is_there(instance)) {
+        warn("everything is left out, so the picture is empty: give fewer --leave-out");
+    }
     let request = sun.request(None)?;
     let mut warnings = Vec::new();
     let path = sunbake::sun_path(&request, &scene, &mut warnings)?;

@@ -14,6 +14,14 @@ pub fn check(look: &LookArgs, output: OutputChoice) -> Result<(), Failure> {
     check_ambient(look, output)
 }
 
+/// Refuses a technique that finds the shadows of lights where none is on. A scene that is not baked has no other.
+pub fn check_sky_of_set(look: &LookArgs) -> Result<(), Failure> {
+    if look.light == LightChoice::Sky && look.technique != TechniqueChoice::Baked {
+        return usage("--technique has no effect with --light sky, which no technique shades: leave one of them out");
+    }
+    Ok(())
+}
+
 /// Refuses a filter where no stored times are read. Beside shadow maps these are a lamp's, if the stage has one.
 pub fn check_filter(look: &LookArgs, output: OutputChoice, has_lamp: bool) -> Result<(), Failure> {
     if look.filter == FilterChoice::Bilinear {
@@ -77,6 +85,9 @@ fn check_maps(look: &LookArgs) -> Result<(), Failure> {
 
 fn check_lights(look: &LookArgs, output: OutputChoice) -> Result<(), Failure> {
     let light = format!("--light {}", spelling(&look.light));
+    if matches!(look.technique, TechniqueChoice::Map(_)) && look.light == LightChoice::Lamp {
+        return usage("shadow maps are the sun's, and a lamp has its baked shadows: draw --technique baked");
+    }
     if output == OutputChoice::Visibility && look.light == LightChoice::Sky {
         return usage(format!("{light} has no effect with --output visibility, which shows the sun's: leave it out"));
     }
@@ -122,7 +133,7 @@ mod tests {
         let command = format!("sunplay frame set -o out.png {options}");
         let args = Args::try_parse_from(command.split_whitespace()).unwrap_or_else(|error| panic!("{error}"));
         let Command::Frame(args) = args.command else { unreachable!() };
-        let checked = check(&args.look, args.output);
+        let checked = check(&args.look, args.output).and_then(|()| check_sky_of_set(&args.look));
         checked.and_then(|()| check_filter(&args.look, args.output, has_lamp)).err().map(|failure| failure.message)
     }
 
@@ -144,6 +155,8 @@ mod tests {
             ("--technique map:planar --bias none", ["--bias", "leave it out"]),
             ("--technique truth:soft --sun-samples 4", ["--sun-samples", "truth:soft:N"]),
             ("--output volumes", ["no volumes to show", "--technique volumes"]),
+            ("--technique map --light lamp", ["a lamp has its baked shadows", "--technique baked"]),
+            ("--technique truth:hard --light sky", ["--technique has no effect", "--light sky"]),
         ] {
             let text = said(options, false).unwrap_or_else(|| panic!("{options} is let through"));
             assert!(words.iter().all(|word| text.contains(word)), "{options}: {text}");

@@ -24,7 +24,8 @@ pub fn parse_technique(text: &str) -> Result<TechniqueChoice, String> {
         let modes = Mode::ALL.map(|mode| mode.to_string()).join(", ");
         let variants = Variant::ALL.map(|variant| variant.to_string()).join(", ");
         format!(
-            "`{text}` is not a technique: give baked, {modes}, map, {variants}, truth:hard, truth:soft or truth:soft:N"
+            "`{text}` is not a technique: give baked, {modes}, map, {variants}, truth:hard, truth:soft, or \
+             truth:soft:N with N from 1 to 65536"
         )
     };
     if text == "map" {

@@ -1,7 +1,7 @@
 //! What an atlas promises, on scenes built by code.
 
 use super::scenes::{cuboid, hills, lit_quad, once, scene, sphere, triangles};
-use crate::atlas::{Atlas, AtlasError, AtlasSettings, Density, LayoutOrigin, Placement, build};
+use crate::atlas::{Atlas, AtlasError, AtlasSettings, Density, LayoutOrigin, Misfit, Placement, build};
 use crate::scene::{Mesh, Scene};
 use crate::testing::atlas::{bake, bake_and_check};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
@@ -159,7 +159,14 @@ fn settings_out_of_range_are_refused() {
     let crowd: Vec<_> =
         (0..4000).map(|i| [Vec3::X, Vec3::Y, Vec3::Z].map(|p| p + Vec3::splat(2.0 * i as f32))).collect();
     let small = build(&scene(vec![(triangles(&crowd), once())]), &settings(Density::Pages(1), 64), &|_| true);
-    assert!(matches!(small, Err(AtlasError::PageTooSmall { .. })));
+    let crowded = Misfit::Charts { instance: 0, charts: 4000 };
+    assert!(matches!(small, Err(AtlasError::PageTooSmall { misfit, .. }) if misfit == crowded), "{small:?}");
+    let mut dense = village();
+    dense.instances[1].role.texels_per_metre = Some(1000.0);
+    let roomy = AtlasSettings { most_texels: u64::MAX, ..settings(Density::Pages(1), 64) };
+    let large = build(&dense, &roomy, &|_| true);
+    let by_density = Misfit::Density { instance: 1 };
+    assert!(matches!(large, Err(AtlasError::PageTooSmall { misfit, .. }) if misfit == by_density), "{large:?}");
 }
 
 fn is_whole_page(atlas: &Atlas) -> bool {

@@ -79,7 +79,7 @@ pub struct CompareArgs {
     /// What draws: the GPU if there is one, the GPU, or the CPU, which draws neither volumes nor maps.
     #[arg(long, value_enum, default_value_t = RendererChoice::Auto)]
     pub renderer: RendererChoice,
-    /// Threads; 0 is one per core.
+    /// Threads of the CPU; 0 is one per core.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub threads: usize,
     /// Print the report as JSON on stdout.
