@@ -292,8 +292,7 @@ impl Warning {
             Self::Narrow { objects, texels_per_metre, .. } => {
                 let name = objects.first().map(String::as_str).unwrap_or_default();
                 let value = in_quotes(&format!("{name}={}", texels_per_metre.ceil()));
-                let set = |setting| Remedy::Set(setting, value.clone());
-                Some(Remedy::AnyOf([Setting::ObjectDensityAround, Setting::ObjectDensity].map(set).into()))
+                Some(Remedy::Set(Setting::ObjectDensityAround, value))
             }
             Self::Merged { layer_cap, .. } if *layer_cap as u64 >= MOST_LAYERS => None,
             Self::Merged { needed_layers, .. } => {

@@ -300,7 +300,7 @@ mod tests {
             (wishes("steel", "shell_a", &[]), "\"shell_a\" is left out"),
             (wishes("", "steel", &[("shell_*", 3.0)]), "no texels"),
             (wishes("", "", &[("steel", 3.0), ("steel", 4.0)]), "3 and 4 texels"),
-            (wishes("", "", &[("steel", -1.0)]), "above zero"),
+            (wishes("", "", &[("steel", -1.0)]), "from 0.000001"),
             (wishes("", "", &[("wood", 1.0)]), "\"wood\" to give a density; it has materials steel"),
             (wishes("node:99", "", &[]), "no node:99 to leave out; it has 3 nodes, node:0 to node:2"),
             (wishes("", "mesh:1", &[]), "no mesh:1 to free of shadows on it; it has 1 mesh, mesh:0"),

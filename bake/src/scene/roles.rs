@@ -8,8 +8,8 @@
 //! | `sunbake_leave_out` | true or false | not there at all: not drawn, not baked, casts nothing |
 //! | `sunbake_no_cast` | true or false | drawn and baked, and lets all light through |
 //! | `sunbake_no_receive` | true or false | drawn, and casts; nothing shades it, and it has no texels |
-//! | `sunbake_density` | a number above 0 | texels a metre, whatever the scene's density is |
-//! | `sunbake_density_around` | a number above 0 | at least as many, on it and on what is within its own size of it |
+//! | `sunbake_density` | 0.000001 to 1000000 | texels a metre, whatever the scene's density is |
+//! | `sunbake_density_around` | the same | at least as many, on it and on what is within its own size of it |
 //!
 //! They stand on a node, a mesh or a material. A node's hold for all nodes below it. What is nearest to the surface's
 //! place decides: the node's own, then those of the nodes above it, then the mesh's, then the material's. A material
