@@ -157,7 +157,7 @@ fn invalid_options_are_refused() {
         (&["--leave-out", "ghost"], 1, &["\"ghost\" to leave out", "another --leave-out"]),
         (&["--no-cast", "ghost"], 1, &["\"ghost\" to free of its shadow", "another --no-cast"]),
         (&["--no-receive", "node:9"], 1, &["node:9", "it has 1 node, node:0", "another --no-receive"]),
-        (&["--density", "floor"], 1, &["`floor` is no name with a positive number", "NAME=X"]),
+        (&["--density", "floor"], 1, &["`floor` is no name with texels per metre", "NAME=X"]),
         (&["--leave-out", "node:0", "--no-cast", "node:0"], 1, &["is left out", "take one of the two wishes back"]),
         (&["--no-receive", "node:0", "--density", "node:0=4"], 1, &["no texels to give a density"]),
         (&["--density", "node:0=4", "--density", "node:0=5"], 1, &["4 and 5 texels a metre"]),
