@@ -151,8 +151,8 @@ pub fn stage(
         }
         if is_baked {
             return Err(Failure::usage(format!(
-                "{} is a file and no set, so nothing was baked: bake it with sunbake, or draw --technique volumes, map \
-                 or truth:hard",
+                "{} is a file and no set, and nothing was baked for it: bake it with sunbake, or draw --technique \
+                 volumes, map or truth:hard",
                 from.display()
             )));
         }
