@@ -51,6 +51,26 @@ impl Intervals {
         self.0.iter().any(|&[start, end]| (start..=end).contains(&t))
     }
 
+    /// The times that are in these and not in others.
+    pub fn without(&self, others: &Self) -> Self {
+        let mut left = Vec::with_capacity(self.0.len() + others.0.len());
+        for &[start, end] in &self.0 {
+            let mut from = start;
+            for &[cut_start, cut_end] in others.0.iter().filter(|other| other[1] > start && other[0] < end) {
+                left.push([from, cut_start]);
+                from = cut_end;
+            }
+            left.push([from, end]);
+        }
+        left.retain(|[start, end]| start < end);
+        Self(left)
+    }
+
+    /// Those that are longer.
+    pub fn longer_than(&self, least: f64) -> Self {
+        Self(self.0.iter().copied().filter(|[start, end]| end - start > least).collect())
+    }
+
     /// The times that are in both.
     pub fn intersection(&self, other: &Self) -> Self {
         let pairs = self.0.iter().flat_map(|a| other.0.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));

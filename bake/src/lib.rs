@@ -84,6 +84,7 @@ pub mod sun;
 pub mod testing;
 pub mod texels;
 pub mod trace;
+pub mod tracks;
 pub mod visibility;
 mod warning;
 pub mod words;

@@ -28,6 +28,7 @@ mod accessors;
 mod air;
 pub mod alpha;
 mod cameras;
+mod components;
 mod container;
 mod document;
 mod error;
@@ -54,6 +55,8 @@ mod smooth;
 mod tests;
 mod triangles;
 
+pub use components::Components;
+pub(crate) use components::root;
 pub use error::LoadError;
 pub(crate) use file::PackedElements;
 pub use file::SceneFile;

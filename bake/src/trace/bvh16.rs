@@ -92,16 +92,23 @@ impl Bvh16 {
     /// Builds over every triangle of the tracer, with boxes along the rows of `box_from_tracer`, each grown by
     /// `padding`.
     pub fn new(tracer: &Tracer, box_from_tracer: DMat3, padding: f32) -> Self {
-        let rotated = |triangle: &[Vec3; 3]| triangle.map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
-        let bounds = |triangle| {
-            let [a, b, c] = rotated(triangle);
+        let all: Vec<u32> = (0..tracer.corners().len() as u32).collect();
+        Self::over(tracer, &all, box_from_tracer, padding)
+    }
+
+    /// The same over some of the triangles.
+    pub fn over(tracer: &Tracer, ids: &[u32], box_from_tracer: DMat3, padding: f32) -> Self {
+        let rotated = |id: u32| tracer.corners()[id as usize].map(|v| (box_from_tracer * v.as_dvec3()).as_vec3());
+        let bounds = |&id: &u32| {
+            let [a, b, c] = rotated(id);
             [a.min(b).min(c) - padding, a.max(b).max(c) + padding]
         };
-        let boxes: Vec<[Vec3; 2]> = tracer.corners().iter().map(bounds).collect();
+        let boxes: Vec<[Vec3; 2]> = ids.iter().map(bounds).collect();
         let (tree, order) = super::binary_hierarchy(&boxes);
+        let order: Vec<u32> = order.into_iter().map(|place| ids[place as usize]).collect();
         let mut collapse = Collapse {
             triangles: triangles_below(&tree),
-            corners: &|id| rotated(&tracer.corners()[id as usize]),
+            corners: &rotated,
             tree: &tree,
             order: &order,
             bvh: Self { nodes: Vec::new(), leaves: Vec::new() },

@@ -163,6 +163,11 @@ impl Tracer {
         &self.corners
     }
 
+    /// Flat index in [`Geometry`] of each of these triangles.
+    pub(crate) fn flat(&self) -> &[u32] {
+        &self.flat
+    }
+
     /// Whether a triangle has an alpha mask.
     #[inline]
     pub(crate) fn has_alpha_mask(&self, id: u32) -> bool {

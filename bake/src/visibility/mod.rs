@@ -16,7 +16,7 @@ mod start;
 pub use crate::intervals::{IntervalTable, Intervals};
 pub use bisect::BisectEngine;
 pub(crate) use buried::{Answers, BuriedPoints, fill_buried};
-pub use exact::ExactEngine;
+pub use exact::{ExactEngine, OccluderFinder, OccluderSession};
 pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;
 pub use start::{RayStart, SurfaceSide, ray_starts};

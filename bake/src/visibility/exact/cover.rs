@@ -41,6 +41,8 @@ pub(super) struct GapCloser<'a> {
     seeds: [SeedBatches; 2],
     /// Triangles that close gaps at this point.
     next_seeds: [SeedBatches; 2],
+    /// Triangles that closed gaps since the last query's start.
+    pub useful: Vec<u32>,
     /// Memory for one answer a lane.
     hidden: Vec<HiddenSpans>,
     follower: Follower<'a>,
@@ -53,6 +55,7 @@ impl<'a> GapCloser<'a> {
             frame,
             seeds: Default::default(),
             next_seeds: Default::default(),
+            useful: Vec::new(),
             hidden: vec![HiddenSpans::default(); frame.lanes.len()],
             follower: Follower::default(),
         }
@@ -70,6 +73,7 @@ impl<'a> GapCloser<'a> {
     pub fn close_with_seeds<S: Simd>(&mut self, simd: S, query: &mut Query) -> u64 {
         std::mem::swap(&mut self.seeds, &mut self.next_seeds);
         self.next_seeds.iter_mut().for_each(SeedBatches::clear);
+        self.useful.clear();
         let seeds = std::mem::take(&mut self.seeds);
         let mut triangles = 0;
         for batch in seeds.iter().flat_map(SeedBatches::batches) {
@@ -115,6 +119,7 @@ impl<'a> GapCloser<'a> {
         for index in bits(useful) {
             let kind = usize::from(self.tracer.has_alpha_mask(ids[index]));
             self.next_seeds[kind].add(ids[index], batch.corners_of(index));
+            self.useful.push(ids[index]);
         }
         useful != 0
     }

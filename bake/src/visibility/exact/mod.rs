@@ -24,6 +24,7 @@ mod cover;
 mod follow;
 mod gaps;
 mod near;
+mod occluders;
 mod seeds;
 mod solve;
 mod walk;
@@ -39,6 +40,7 @@ use boxes::BoxFrames;
 use cover::{GapCloser, Query};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat3, DVec3};
+pub use occluders::{OccluderFinder, OccluderSession};
 use walk::Walk;
 
 /// Growth of every box, tracer space (whose half size is 512 to 1024): four times the steps of an `f32` that turning a
