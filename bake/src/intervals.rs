@@ -133,6 +133,16 @@ mod tests {
     }
 
     #[test]
+    fn what_is_taken_away_leaves_the_rest() {
+        let of = |raw: &[[f64; 2]]| Intervals::from_unsorted(raw.to_vec());
+        let day = of(&[[0.1, 0.5], [0.6, 0.9]]);
+        assert_eq!(day.without(&of(&[[0.2, 0.3], [0.4, 0.7]])), of(&[[0.1, 0.2], [0.3, 0.4], [0.7, 0.9]]));
+        assert_eq!(day.without(&of(&[[0.0, 0.5], [0.9, 1.0]])), of(&[[0.6, 0.9]]));
+        assert_eq!((day.without(&Intervals::never()), day.without(&Intervals::always())), (day.clone(), of(&[])));
+        assert_eq!(day.longer_than(0.35), of(&[[0.1, 0.5]]));
+    }
+
+    #[test]
     fn a_table_gives_back_what_was_pushed() {
         let rows = [Intervals::always(), Intervals::never(), Intervals::from_unsorted(vec![[0.1, 0.2], [0.4, 0.5]])];
         let mut table = IntervalTable::default();

@@ -54,9 +54,8 @@ pub fn find_spans(
         let of_run = |run: usize| {
             let mut session = finder.session();
             let texels = run * RUN..points.len().min((run + 1) * RUN);
-            let of_texel = |texel: usize| {
-                points[texel].as_ref().map_or_else(Vec::new, |point| find(&mut session, texel, point))
-            };
+            let of_texel =
+                |texel: usize| points[texel].as_ref().map_or_else(Vec::new, |point| find(&mut session, texel, point));
             texels.map(of_texel).collect::<Vec<_>>()
         };
         (0..points.len().div_ceil(RUN)).into_par_iter().flat_map_iter(of_run).collect()

@@ -62,7 +62,8 @@ fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 16]>
     let (mut a, mut b) = (0, 0);
     while a < some.len() && b < others.len() {
         let (x, y) = (some[a].part, others[b].part);
-        let end = |spans: &[FoundSpan], from: usize| spans[from..].partition_point(|s| s.part == spans[from].part) + from;
+        let end =
+            |spans: &[FoundSpan], from: usize| spans[from..].partition_point(|s| s.part == spans[from].part) + from;
         let (a_end, b_end) = (end(some, a), end(others, b));
         if x == y {
             let own = aligned(&some[a..a_end], &others[b..b_end]);
@@ -160,4 +161,80 @@ fn numbers(found: &FoundSpans, size: PageSize, track: &[u32]) -> HashMap<u32, u1
         }
     }
     number
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spans(part: u32, shades: &[[f64; 2]]) -> Vec<FoundSpan> {
+        shades.iter().map(|&shade| FoundSpan { part, shade }).collect()
+    }
+
+    fn page(texels: &[Vec<FoundSpan>]) -> FoundSpans {
+        let mut found = FoundSpans { first: vec![0], spans: Vec::new() };
+        for own in texels {
+            found.spans.extend_from_slice(own);
+            found.first.push(found.spans.len() as u32);
+        }
+        found
+    }
+
+    #[test]
+    fn spans_of_one_occluder_match_in_order_or_by_their_times() {
+        let three = spans(7, &[[0.1, 0.2], [0.4, 0.5], [0.7, 0.8]]);
+        let later = spans(7, &[[0.15, 0.25], [0.45, 0.55], [0.75, 0.85]]);
+        assert_eq!(matches(&three, &later).as_slice(), [[0, 0], [1, 1], [2, 2]]);
+        let two = spans(7, &[[0.39, 0.52], [0.71, 0.8]]);
+        let pairs = |a: &[FoundSpan], b: &[FoundSpan]| {
+            let mut pairs = matches(a, b).to_vec();
+            pairs.sort_unstable();
+            pairs
+        };
+        assert_eq!(pairs(&three, &two), [[1, 0], [2, 1]]);
+        assert_eq!(pairs(&two, &three), [[0, 1], [1, 2]]);
+        let mixed = [spans(3, &[[0.0, 0.9]]), three.clone()].concat();
+        assert_eq!(pairs(&mixed, &two), [[2, 0], [3, 1]]);
+        assert!(matches(&spans(3, &[[0.0, 1.0]]), &three).is_empty());
+    }
+
+    #[test]
+    fn linked_spans_share_a_number_and_others_do_not() {
+        let texels = [
+            spans(1, &[[0.1, 0.2], [0.4, 0.5]]),
+            [spans(1, &[[0.12, 0.22], [0.42, 0.5]]), spans(2, &[[0.3, 0.6]])].concat(),
+        ];
+        let size = PageSize { width: 2, height: 1 };
+        let tracks = number_tracks(&page(&texels), size, |_, _| true);
+        let numbers = |texel: usize| tracks.of_texel(texel).iter().map(|span| span.track).collect::<Vec<_>>();
+        assert_eq!(numbers(0), numbers(1)[..2]);
+        assert!(numbers(1).is_sorted_by(|a, b| a < b));
+        let apart = number_tracks(&page(&texels), size, |_, _| false);
+        let of = |texel: usize| apart.of_texel(texel).iter().map(|span| span.track).collect::<Vec<_>>();
+        assert!(of(0).iter().all(|number| !of(1).contains(number)));
+    }
+
+    #[test]
+    fn a_track_passes_a_texel_once() {
+        // Four texels around a post: each step round leads from one span to the next.
+        let two = || spans(1, &[[0.1, 0.2], [0.3, 0.4]]);
+        let texels = [two(), spans(1, &[[0.28, 0.4]]), spans(1, &[[0.12, 0.22]]), spans(1, &[[0.2, 0.3]])];
+        let tracks = number_tracks(&page(&texels), PageSize { width: 2, height: 2 }, |_, _| true);
+        for texel in 0..4 {
+            assert!(tracks.of_texel(texel).is_sorted_by(|a, b| a.track < b.track), "{texel}: {tracks:?}");
+        }
+    }
+
+    #[test]
+    fn more_tracks_than_numbers_differ_where_they_meet() {
+        let size = PageSize { width: NUMBERS + 1, height: 2 };
+        let texels = vec![spans(1, &[[0.1, 0.2]]); 2 * size.width as usize];
+        let tracks = number_tracks(&page(&texels), size, |_, _| false);
+        let number = |x: usize, y: usize| tracks.of_texel(y * size.width as usize + x)[0].track;
+        for x in 0..size.width as usize - 1 {
+            let mut four = [number(x, 0), number(x + 1, 0), number(x, 1), number(x + 1, 1)];
+            four.sort_unstable();
+            assert!(four.windows(2).all(|pair| pair[0] != pair[1]), "at {x}: {four:?}");
+        }
+    }
 }

@@ -1,0 +1,216 @@
+//! Shadow tracks: each occluder's shade by itself is exact, and shadows narrower than texels are lines between them.
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use sunbake::atlas::{Footprint, PageSize, SurfacePoint};
+use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
+use sunbake::scene::Components;
+use sunbake::sun::{DayOutcome, SunPath, day};
+use sunbake::testing::{SceneBuilder, block, floor};
+use sunbake::trace::Direction;
+use sunbake::tracks::{PageTracks, TrackFootprint, find_spans, number_tracks, tracked_visibility};
+use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
+use sunbake_tests::{Traced, june_day};
+
+/// Texels a metre, and their number along an edge of the patch behind the fence.
+const DENSITY: f64 = 10.0;
+const EDGE: u32 = 21;
+
+/// A picket of a fence that runs from west to east: 7 cm wide, a gap of 7 cm to the next.
+fn picket(index: usize) -> Vec<[Vec3; 3]> {
+    let x = -1.4 + 0.14 * index as f32;
+    block(Vec3::new(x, 0.0, -0.01), Vec3::new(x + 0.07, 1.0, 0.01))
+}
+
+fn rail() -> Vec<[Vec3; 3]> {
+    block(Vec3::new(-1.5, 0.6, 0.012), Vec3::new(1.5, 0.68, 0.03))
+}
+
+fn ground() -> SceneBuilder {
+    SceneBuilder::new().soup(&floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0))
+}
+
+/// The ground, and a fence of twenty pickets and a rail in one mesh.
+fn fence() -> Traced {
+    let soup: Vec<[Vec3; 3]> = (0..20).flat_map(picket).chain(rail()).collect();
+    Traced::new(ground().soup(&soup).build())
+}
+
+fn path() -> SunPath {
+    match day(&june_day()).expect("a day") {
+        DayOutcome::Path(path) => path,
+        DayOutcome::NoSun { .. } => unreachable!("the sun rises"),
+    }
+}
+
+fn point(here: &Traced, [x, z]: [f64; 2]) -> SurfacePoint {
+    let from = DVec3::new(x, 3.0, z) - here.scene.centre_m;
+    let is_ground = |triangle: u32| here.geometry.instance[triangle as usize] == 0;
+    let hit = here.tracer.closest_hit_where(from, &Direction::new(-DVec3::Y), is_ground).expect("the ground");
+    here.point(hit.triangle as usize, hit.barycentric)
+}
+
+/// Where a place on the patch lies, in texels from its first one: north of the fence, in whose shade it is at noon.
+fn place(x: f64, y: f64) -> [f64; 2] {
+    [-1.0 + x / DENSITY, -2.2 + y / DENSITY]
+}
+
+struct Patch {
+    here: Traced,
+    path: SunPath,
+    tracks: PageTracks,
+}
+
+impl Patch {
+    fn new() -> Self {
+        let (here, path) = (fence(), path());
+        let engine = ExactEngine::new(&here.tracer, std::slice::from_ref(&path));
+        let parts = Components::new(&here.scene, &here.geometry);
+        let finder = OccluderFinder::new(&engine, &parts);
+        let points: Vec<_> =
+            (0..EDGE * EDGE).map(|i| Some(point(&here, place(f64::from(i % EDGE), f64::from(i / EDGE))))).collect();
+        let found = find_spans(&finder, size(), &points, None, path.width_t(0.5) / 8.0);
+        let tracks = number_tracks(&found, size(), |_, _| true);
+        Self { here, path, tracks }
+    }
+
+    fn seen(&self, at: DVec2, t: f64) -> f32 {
+        let footprint = Footprint::new(at, size());
+        let spans = footprint.texels.map(|texel| self.tracks.of_texel(texel));
+        let weights = footprint.weights().map(|weight| weight as f32);
+        tracked_visibility(&TrackFootprint { spans, weights }, t as f32, self.path.width_t(t) as f32)
+    }
+
+    fn lit(&self, engine: &ExactEngine, at: DVec2) -> Intervals {
+        lit_at(engine, &point(&self.here, place(at.x, at.y))).swap_remove(0)
+    }
+}
+
+fn size() -> PageSize {
+    PageSize { width: EDGE, height: EDGE }
+}
+
+/// The share of a window that lies in intervals.
+fn soft(lit: &Intervals, t: f64, width_t: f64) -> f64 {
+    let window = Intervals::from_unsorted(vec![[t - 0.5 * width_t, t + 0.5 * width_t]]);
+    lit.intersection(&window).lit_length() / width_t
+}
+
+fn differ(a: &Intervals, b: &Intervals) -> f64 {
+    a.without(b).lit_length() + b.without(a).lit_length()
+}
+
+#[test]
+fn each_part_alone_hides_what_it_hides_in_a_scene_without_the_others() {
+    let (here, path) = (fence(), path());
+    let engine = ExactEngine::new(&here.tracer, std::slice::from_ref(&path));
+    let parts = Components::new(&here.scene, &here.geometry);
+    let finder = OccluderFinder::new(&engine, &parts);
+    assert_eq!(parts.count, 22, "the ground, twenty pickets and a rail");
+    let mut session = finder.session();
+    let mut shaded = 0;
+    for part in [1, 8, 15, 20, 21] {
+        let soup = if part == 21 { rail() } else { picket(part - 1) };
+        let only = Traced::new(ground().soup(&soup).build());
+        let only_engine = ExactEngine::new(&only.tracer, std::slice::from_ref(&path));
+        for k in 0..60 {
+            let at = place(f64::from(k % 10) * 2.03, f64::from(k / 10) * 3.7);
+            let alone = session.alone(&point(&here, at), part as u32);
+            let expected = lit_at(&only_engine, &point(&only, at)).swap_remove(0);
+            // The scenes' coordinates are rounded about different centres.
+            assert!(differ(&alone, &expected) < 1e-5, "part {part} at {at:?}: {alone:?} {expected:?}");
+            shaded += usize::from(alone.as_slice().len() > 1);
+        }
+    }
+    assert!(shaded > 30, "only {shaded} answers hold a shadow");
+}
+
+#[test]
+fn all_parts_together_hide_what_the_engine_finds() {
+    let (here, path) = (fence(), path());
+    let engine = ExactEngine::new(&here.tracer, std::slice::from_ref(&path));
+    let parts = Components::new(&here.scene, &here.geometry);
+    let finder = OccluderFinder::new(&engine, &parts);
+    let mut session = finder.session();
+    for k in 0..100 {
+        let point = point(&here, place(f64::from(k % 10) * 2.03, f64::from(k / 10) * 1.97));
+        let (lit, found) = session.find(&point);
+        let expected = lit_at(&engine, &point).swap_remove(0);
+        assert!(differ(&lit, &expected) < 1e-12);
+        let together =
+            found.iter().fold(session.facing(&point), |lit, &part| lit.intersection(&session.alone(&point, part)));
+        assert!(differ(&together, &expected) < 1e-9, "{found:?}: {together:?} {expected:?}");
+    }
+}
+
+#[test]
+fn texels_centres_show_what_they_see() {
+    let patch = Patch::new();
+    let engine = ExactEngine::new(&patch.here.tracer, std::slice::from_ref(&patch.path));
+    let (mut worst, mut sum, mut count) = (0.0f64, 0.0, 0);
+    for texel in (0..EDGE * EDGE).step_by(5) {
+        let at = DVec2::new(f64::from(texel % EDGE), f64::from(texel / EDGE));
+        let lit = patch.lit(&engine, at);
+        for t in (0..200).map(|k| (f64::from(k) + 0.5) / 200.0) {
+            let error = (f64::from(patch.seen(at, t)) - soft(&lit, t, patch.path.width_t(t))).abs();
+            (worst, sum, count) = (worst.max(error), sum + error, count + 1);
+        }
+    }
+    // Two edges within one of the parts that the sun's width is cut into hide more together than they should.
+    assert!(worst < 0.13 && sum / f64::from(count) < 0.002, "{worst} at worst, {} on average", sum / f64::from(count));
+}
+
+#[test]
+fn pickets_narrower_than_texels_cast_lines() {
+    let patch = Patch::new();
+    let engine = ExactEngine::new(&patch.here.tracer, std::slice::from_ref(&patch.path));
+    let mut encoder = PageEncoder::new((EDGE * EDGE) as usize, Bits::Sixteen, 64);
+    for texel in 0..EDGE * EDGE {
+        let at = DVec2::new(f64::from(texel % EDGE), f64::from(texel / EDGE));
+        encoder.set(texel as usize, &patch.lit(&engine, at));
+    }
+    let layers = encoder.finish();
+    let mut errors = [0.0f64; 3];
+    let mut count = 0;
+    for k in 0..1500 {
+        let share = |base: f64| (f64::from(k) * base).fract();
+        let at = DVec2::new(share(0.754_877_666_2), share(0.569_840_290_9)) * f64::from(EDGE - 1);
+        let lit = patch.lit(&engine, at);
+        let footprint = Footprint::new(at, size());
+        for t in [0.3, 0.4, 0.5, 0.6, 0.7] {
+            let width_t = patch.path.width_t(t);
+            let truth = soft(&lit, t, width_t);
+            let (time, width) = (t as f32, width_t as f32);
+            let plain = footprint.blend(|texel| soft_visibility(&layers, texel, Bits::Sixteen, time, width));
+            let sharp = footprint.blend(|texel| edge_sample(&layers, texel, Bits::Sixteen, time, width));
+            for (error, seen) in errors.iter_mut().zip([plain, sharpened(sharp), patch.seen(at, t)]) {
+                *error += (f64::from(seen) - truth).abs();
+            }
+            count += 1;
+        }
+    }
+    let [plain, sharp, tracked] = errors.map(|sum| sum / f64::from(count));
+    println!("mean errors: bilinear {plain:.4}, sharp {sharp:.4}, tracks {tracked:.4}");
+    assert!(plain > 0.05, "the shadows are not narrow: {plain}");
+    assert!(tracked < 0.3 * plain.min(sharp), "bilinear {plain}, sharp {sharp}, tracks {tracked}");
+}
+
+#[test]
+fn nothing_pops_in_time_or_between_quads() {
+    let patch = Patch::new();
+    for k in 0..40 {
+        let share = |base: f64| (f64::from(k) * base).fract();
+        let at = DVec2::new(share(0.754_877_666_2), share(0.569_840_290_9)) * f64::from(EDGE - 1);
+        let step_t = patch.path.width_t(0.5) / 20.0;
+        let times: Vec<f64> = (0..(1.0 / step_t) as usize).map(|i| i as f64 * step_t).collect();
+        for pair in times.windows(2) {
+            let [before, after] = [0, 1].map(|i| patch.seen(at, pair[i]));
+            assert!((before - after).abs() < 0.1, "{at} at {}: {before} to {after}", pair[0]);
+        }
+        // Across the line between two quads.
+        for t in [0.3, 0.5, 0.7] {
+            let on = DVec2::new(at.x.round().clamp(1.0, f64::from(EDGE - 2)), at.y);
+            let [left, right] = [-1e-6, 1e-6].map(|off| patch.seen(on + DVec2::X * off, t));
+            assert!((left - right).abs() < 1e-3, "{on} at {t}: {left} and {right}");
+        }
+    }
+}
