@@ -3,17 +3,31 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use sunbake::atlas::{Footprint, PageSize, SurfacePoint};
 use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
-use sunbake::scene::Components;
-use sunbake::sun::{DayOutcome, SunPath, day};
+use sunbake::scene::{Components, Geometry, Scene};
+use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
-use sunbake::trace::Direction;
+use sunbake::trace::{Direction, Tracer};
 use sunbake::tracks::{PageTracks, TrackFootprint, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
-use sunbake_tests::{Traced, june_day};
 
 /// Texels a metre, and their number along an edge of the patch behind the fence.
 const DENSITY: f64 = 10.0;
 const EDGE: u32 = 21;
+
+/// A scene with what it takes to trace it.
+struct Traced {
+    scene: Scene,
+    geometry: Geometry,
+    tracer: Tracer,
+}
+
+impl Traced {
+    fn new(scene: Scene) -> Self {
+        let geometry = Geometry::new(&scene);
+        let tracer = Tracer::new(&scene, &geometry);
+        Self { scene, geometry, tracer }
+    }
+}
 
 /// A picket of a fence that runs from west to east: 7 cm wide, a gap of 7 cm to the next.
 fn picket(index: usize) -> Vec<[Vec3; 3]> {
@@ -36,7 +50,8 @@ fn fence() -> Traced {
 }
 
 fn path() -> SunPath {
-    match day(&june_day()).expect("a day") {
+    let request = DayRequest::new(Some([40.0, 0.0]), Some("2026-06-21".parse().expect("a date"))).expect("a place");
+    match day(&request).expect("a day") {
         DayOutcome::Path(path) => path,
         DayOutcome::NoSun { .. } => unreachable!("the sun rises"),
     }
@@ -46,7 +61,7 @@ fn point(here: &Traced, [x, z]: [f64; 2]) -> SurfacePoint {
     let from = DVec3::new(x, 3.0, z) - here.scene.centre_m;
     let is_ground = |triangle: u32| here.geometry.instance[triangle as usize] == 0;
     let hit = here.tracer.closest_hit_where(from, &Direction::new(-DVec3::Y), is_ground).expect("the ground");
-    here.point(hit.triangle as usize, hit.barycentric)
+    SurfacePoint::of_triangle(&here.scene, &here.geometry, hit.triangle as usize, hit.barycentric)
 }
 
 /// Where a place on the patch lies, in texels from its first one: north of the fence, in whose shade it is at noon.
