@@ -13,7 +13,7 @@ use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
 use sunbake::scene::{Components, Geometry, LoadLimits, Scene, load};
 use sunbake::sun::{DayOutcome, DayRequest};
 use sunbake::trace::{Direction, Tracer};
-use sunbake::tracks::{PageTracks, TrackFootprint, find_spans, number_tracks, tracked_visibility};
+use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
 
 const EDGE_M: f64 = 6.0;
@@ -125,9 +125,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             let plain_seconds = started.elapsed().as_secs_f64();
             let started = Instant::now();
             let least_t = path.width_t(0.5) / 8.0;
-            let found = find_spans(&finder, size, &points, None, least_t);
+            let texels: Vec<u32> = (0..points.len() as u32).filter(|&texel| points[texel as usize].is_some()).collect();
+            let point = |texel: u32| points[texel as usize].unwrap_or_else(|| unreachable!("it has a point"));
+            let found = find_spans(&finder, &texels, &point, size, None, least_t);
             let found_seconds = started.elapsed().as_secs_f64();
-            let tracks: PageTracks = number_tracks(&found, size, |_, _| true);
+            let tracks: PageTracks = number_tracks(&found, &Linked { size, source: &texels, is_open: &|_, _| true });
             let seconds = started.elapsed().as_secs_f64();
             let mut errors: [Errors; 3] = Default::default();
             for k in 0..POINTS {
@@ -136,7 +138,6 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let Some(point) = at(place.x, place.y) else { continue };
                 let lit = &lit_at(&engine, &point)[0];
                 let footprint = Footprint::new(place, size);
-                let weights = footprint.weights().map(|w| w as f32);
                 for i in 0..TIMES {
                     let t = (i as f64 + 0.5) / TIMES as f64;
                     let width_t = path.width_t(t);
@@ -144,8 +145,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                     let (t, width) = (t as f32, width_t as f32);
                     let plain = footprint.blend(|texel| soft_visibility(&layers, texel, Bits::Sixteen, t, width));
                     let sharp = footprint.blend(|texel| edge_sample(&layers, texel, Bits::Sixteen, t, width));
-                    let spans = footprint.texels.map(|texel| tracks.of_texel(texel));
-                    let tracked = tracked_visibility(&TrackFootprint { spans, weights }, t, width);
+                    let tracked = tracked_visibility(&tracks, &footprint, t, width);
                     errors[0].add(plain, truth);
                     errors[1].add(sharpened(sharp), truth);
                     errors[2].add(tracked, truth);

@@ -42,6 +42,9 @@ pub struct BakeSettings {
     pub smooth_terminator: bool,
     /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
+    /// Whether shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few times
+    /// the time of the intervals, and bytes where shadows are dense.
+    pub finds_tracks: bool,
     /// Ambient light, if it is baked.
     pub ambient: Option<AmbientRequest>,
     /// How lit intervals are found.
@@ -200,6 +203,7 @@ impl BakeSettings {
             lane_count: 1,
             smooth_terminator: true,
             bakes_intervals: true,
+            finds_tracks: false,
             ambient: Some(AmbientRequest::with_rays(128)),
             engine: EngineChoice::Exact,
             loss_map: false,

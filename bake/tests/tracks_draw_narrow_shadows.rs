@@ -7,7 +7,7 @@ use sunbake::scene::{Components, Geometry, Scene};
 use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake::trace::{Direction, Tracer};
-use sunbake::tracks::{PageTracks, TrackFootprint, find_spans, number_tracks, tracked_visibility};
+use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
 
 /// Texels a metre, and their number along an edge of the patch behind the fence.
@@ -81,18 +81,15 @@ impl Patch {
         let engine = ExactEngine::new(&here.tracer, std::slice::from_ref(&path));
         let parts = Components::new(&here.scene, &here.geometry);
         let finder = OccluderFinder::new(&engine, &parts);
-        let points: Vec<_> =
-            (0..EDGE * EDGE).map(|i| Some(point(&here, place(f64::from(i % EDGE), f64::from(i / EDGE))))).collect();
-        let found = find_spans(&finder, size(), &points, None, path.width_t(0.5) / 8.0);
-        let tracks = number_tracks(&found, size(), |_, _| true);
+        let texels: Vec<u32> = (0..EDGE * EDGE).collect();
+        let point = |i: u32| point(&here, place(f64::from(i % EDGE), f64::from(i / EDGE)));
+        let found = find_spans(&finder, &texels, &point, size(), None, path.width_t(0.5) / 8.0);
+        let tracks = number_tracks(&found, &Linked { size: size(), source: &texels, is_open: &|_, _| true });
         Self { here, path, tracks }
     }
 
     fn seen(&self, at: DVec2, t: f64) -> f32 {
-        let footprint = Footprint::new(at, size());
-        let spans = footprint.texels.map(|texel| self.tracks.of_texel(texel));
-        let weights = footprint.weights().map(|weight| weight as f32);
-        tracked_visibility(&TrackFootprint { spans, weights }, t as f32, self.path.width_t(t) as f32)
+        tracked_visibility(&self.tracks, &Footprint::new(at, size()), t as f32, self.path.width_t(t) as f32)
     }
 
     fn lit(&self, engine: &ExactEngine, at: DVec2) -> Intervals {

@@ -9,6 +9,7 @@ use sunbake::maps::{
     AmbientMaps, AmbientSide, AmbientTextures, Bits, LayerMaps, PageMaps, decode_share, decode_signed, edge_sample,
     hard_visibility, sharpened, soft_visibility,
 };
+use sunbake::tracks::tracked_visibility;
 use sunbake_shaders::{AmbientModel, Filter, LaneVariant, PageVariant};
 
 /// What the programs that read a page depend on. `radius_rad` is the sun's angular radius; 0 is a point sun.
@@ -27,6 +28,7 @@ pub fn page_variant(page: &PageMaps, bits: Bits, radius_rad: f64) -> PageVariant
         ambient: ambient_model(page),
         has_backs: page.ambient.as_ref().is_some_and(|ambient| ambient.back.is_some()),
         has_walls: page.walls.is_some(),
+        has_tracks: false,
     }
 }
 
@@ -75,7 +77,14 @@ impl<'a> Page<'a> {
     fn page_visibility(&self, page_uv: Vec2, filter: Filter, moment: &Moment) -> f32 {
         match filter {
             Filter::Nearest => self.disc_visibility(self.nearest_texel(page_uv), moment),
-            Filter::Bilinear => self.footprint(page_uv).blend(|texel| self.disc_visibility(texel, moment)),
+            Filter::Tracks if !self.variant.is_point_sun && self.maps.tracks.is_some() => {
+                let footprint = self.footprint(page_uv);
+                let of_tracks = |tracks| tracked_visibility(tracks, &footprint, moment.t, moment.width_t);
+                self.maps.tracks.as_ref().map_or(0.0, of_tracks)
+            }
+            Filter::Bilinear | Filter::Tracks => {
+                self.footprint(page_uv).blend(|texel| self.disc_visibility(texel, moment))
+            }
             Filter::Sharp => {
                 let footprint = self.footprint(page_uv);
                 let mut visibility = 0.0;
@@ -144,7 +153,7 @@ impl<'a> Page<'a> {
         let of_texel = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
         let visibility = match filter {
             Filter::Nearest => of_texel(self.nearest_texel(page_uv)),
-            Filter::Bilinear => self.footprint(page_uv).blend(of_texel),
+            Filter::Bilinear | Filter::Tracks => self.footprint(page_uv).blend(of_texel),
             Filter::Sharp => self.sharp_visibility(layers, &self.footprint(page_uv), lamp.t, lamp.width_t),
         };
         sphere_share.min(visibility)

@@ -26,7 +26,7 @@ fn page(lit: impl Fn(usize, usize) -> Vec<[f32; 2]>) -> PageMaps {
         fall.push(slots.1);
     }
     let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![LayerMaps { rise, fall }] }];
-    PageMaps { width: EDGE as u32, height: EDGE as u32, lanes, lamp: None, ambient: None, walls: None }
+    PageMaps { width: EDGE as u32, height: EDGE as u32, lanes, lamp: None, ambient: None, walls: None, tracks: None }
 }
 
 fn seen(maps: &PageMaps, place: Vec2, filter: Filter, t: f32) -> f32 {

@@ -1,9 +1,11 @@
 //! Playback on the GPU against the same frames on the CPU. These tests need an adapter, and fail without one.
 
 use glam::{DMat4, DVec3, Mat3, Vec2, Vec3, Vec4};
+use sunbake::atlas::PageSize;
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits};
 use sunbake::scene::{Alpha, Material, Mesh, Scene, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, alpha_masked, block, floor, icosphere, opaque, pseudo_random};
+use sunbake::tracks::{FoundSpan, FoundSpans, Linked, MERGED, PageTracks, number_tracks};
 use sunbake_runtime::compare::Agreement;
 use sunbake_runtime::gpu::Gpu;
 use sunbake_runtime::technique::{BakedCpu, BakedGpu};
@@ -134,6 +136,42 @@ fn every_model_of_ambient_light() {
         let eye = DVec3::new(4.0, 3.5, -7.0);
         assert_agreement(&compare(&name, &gpu, &stage, eye, DVec3::new(0.0, 0.8, 0.0), Filter::Bilinear));
     }
+}
+
+/// Spans without any order, of up to a handful of occluders a texel.
+fn noisy_tracks(stage: &Stage) -> PageTracks {
+    let page = &stage.pages[0];
+    let mut state = 17;
+    let mut random = |n: f64| (pseudo_random(&mut state) * n) as u32;
+    let mut found = FoundSpans::default();
+    for _ in 0..page.width * page.height {
+        let part = if random(4.0) == 0 { MERGED } else { random(3.0) };
+        let spans = (0..random(7.0)).map(|i| {
+            let start = 0.14 * f64::from(i) + 0.0001 * f64::from(random(600.0));
+            FoundSpan::new(part, [start, start + 0.0001 * f64::from(random(800.0))])
+        });
+        found.push(spans.collect::<Vec<_>>());
+    }
+    let source: Vec<u32> = (0..page.width * page.height).collect();
+    let size = PageSize { width: page.width, height: page.height };
+    number_tracks(&found, &Linked { size, source: &source, is_open: &|texel, _| texel % 7 > 0 })
+}
+
+#[test]
+fn shadow_tracks_with_and_without_walls() {
+    let gpu = gpu();
+    let mut stage = bake(posts(), Some(equinox(35.0)), 20, Bits::Sixteen);
+    stage.pages[0].tracks = Some(noisy_tracks(&stage));
+    let compared = |stage: &Stage, name: &str| {
+        let (eye, target) = (DVec3::new(5.0, 4.0, 9.0), DVec3::new(0.0, 0.8, 0.0));
+        assert_agreement(&compare(name, &gpu, stage, eye, target, Filter::Tracks));
+    };
+    compared(&stage, "tracks");
+    let mut state = 3;
+    let mut code = || (pseudo_random(&mut state) * 256.0) as u8;
+    let walls = (0..stage.pages[0].width * stage.pages[0].height).map(|_| [code(), code()]).collect();
+    stage.pages[0].walls = Some(walls);
+    compared(&stage, "tracks among walls");
 }
 
 #[test]

@@ -65,6 +65,9 @@ pub enum Filter {
     Bilinear,
     /// The same, and edges of shadows drawn sharply between texels: their distances in time are blended as well.
     Sharp,
+    /// The sun's shadows occluder by occluder: times of the same one are blended, then evaluated, so that shadows far
+    /// narrower than a texel are drawn. Where a page has no tracks, and for lamps, as bilinear.
+    Tracks,
 }
 
 /// A lane across the sun's disc, as a page stores it.
@@ -95,6 +98,8 @@ pub struct PageVariant {
     pub has_backs: bool,
     /// Whether something stands between neighbouring texels, so that filters must not blend across it.
     pub has_walls: bool,
+    /// Whether shadow tracks are read instead of the sun's times.
+    pub has_tracks: bool,
 }
 
 /// How ambient light on a page's surfaces is computed. Each model reads more than the one before.
@@ -112,9 +117,19 @@ pub enum AmbientModel {
 }
 
 impl PageVariant {
-    /// Layers of the page's `rise` texture, and of its `fall` texture. 0: no texture, no binding and no loop.
+    /// Layers of all lanes. 0: nothing on the page ever sees the sun.
     pub fn layer_count(&self) -> u32 {
         self.lanes.iter().map(|lane| lane.layer_count).sum()
+    }
+
+    /// Whether shadow tracks are read: nothing is where nothing ever sees the sun.
+    pub fn reads_tracks(&self) -> bool {
+        self.has_tracks && self.layer_count() > 0
+    }
+
+    /// Layers of the `rise` texture that programs read, and of the `fall` texture. 0: no texture, no binding, no loop.
+    pub fn sun_layer_count(&self) -> u32 {
+        if self.has_tracks { 0 } else { self.layer_count() }
     }
 
     /// Whether any map of texels is read.
@@ -164,7 +179,7 @@ fn push_shade(text: &mut String, look: LookVariant, page: &PageVariant, has_lamp
 /// The lit pass of a surface that nothing shades: entry points `surface_vertex` and `lit_fragment`. Of the page only
 /// ambient light is read.
 pub fn open_lit_shader(surface: SurfaceVariant, page: &PageVariant, has_lamp: bool) -> String {
-    let page = PageVariant { lanes: Vec::new(), lamp_layer_count: 0, ..page.clone() };
+    let page = PageVariant { lanes: Vec::new(), lamp_layer_count: 0, has_tracks: false, ..page.clone() };
     let mut text = on_surface(surface, &page, Filter::default());
     text.push_str(wgsl!("baked/sun_open"));
     text.push_str(&match has_lamp {
@@ -244,6 +259,7 @@ fn push_evaluation(text: &mut String, page: &PageVariant, filter: Filter) {
         text.push_str(wgsl!("baked/footprint"));
         text.push_str(if page.has_walls { wgsl!("baked/blend_beside_walls") } else { wgsl!("baked/blend") });
     }
+    let has_sun = has_sun && !page.reads_tracks();
     if has_sun || has_lamp {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
@@ -285,7 +301,7 @@ fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
     text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/maps")].concat());
     text.push_str(&match filter {
         Filter::Nearest => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_nearest")].concat(),
-        Filter::Bilinear => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_bilinear")].concat(),
+        Filter::Bilinear | Filter::Tracks => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_bilinear")].concat(),
         Filter::Sharp => wgsl!("lamp/baked_sharp").to_owned(),
     });
     text.push_str(wgsl!("lamp/to_lamp"));
@@ -298,10 +314,17 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
         text.push_str(wgsl!("baked/sun_none"));
         return text;
     }
+    if page.reads_tracks() {
+        let reach = if page.has_walls { "" } else { wgsl!("baked/reach") };
+        text.push_str(&[reach, wgsl!("baked/sun_tracks"), wgsl!("baked/sun")].concat());
+        return text;
+    }
     text.push_str(wgsl!("baked/sun_maps"));
     text.push_str(&match filter {
         Filter::Nearest => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_nearest")].concat(),
-        Filter::Bilinear => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_bilinear")].concat(),
+        Filter::Bilinear | Filter::Tracks => {
+            [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_bilinear")].concat()
+        }
         Filter::Sharp => [wgsl!("baked/sun_sharp"), &sharp_visibility(&page.lanes, page.is_point_sun)].concat(),
     });
     text.push_str(if page.is_point_sun { wgsl!("baked/sun_point") } else { wgsl!("baked/sun") });

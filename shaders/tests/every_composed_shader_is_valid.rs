@@ -58,6 +58,7 @@ fn pages() -> Vec<PageVariant> {
         ambient,
         has_backs: lamp_layer_count > 0,
         has_walls: false,
+        has_tracks: false,
     };
     let of_lanes = |l| {
         let ambient = [AmbientModel::Occlusion, AmbientModel::Bent, AmbientModel::Sky];
@@ -66,8 +67,11 @@ fn pages() -> Vec<PageVariant> {
             .chain(ambient.into_iter().flat_map(move |a| [with(l, 65_535, a, 0), with(l, 65_535, a, 3)]))
     };
     let open: Vec<PageVariant> = lanes.iter().flat_map(of_lanes).collect();
-    let walled = open.iter().map(|page| PageVariant { has_walls: true, ..page.clone() });
-    walled.chain(open.iter().cloned()).collect()
+    let variants = [(false, false), (true, false), (false, true), (true, true)];
+    let of_page = |page: &PageVariant| {
+        variants.map(|(has_walls, has_tracks)| PageVariant { has_walls, has_tracks, ..page.clone() })
+    };
+    open.iter().flat_map(of_page).collect()
 }
 
 fn shadow_sources() -> Vec<ShadowSource> {
@@ -117,7 +121,7 @@ fn every_composed_shader_is_valid() {
             validated(&hard_light_shader(surface, light));
         }
         for page in pages() {
-            for filter in [Filter::Nearest, Filter::Bilinear, Filter::Sharp] {
+            for filter in [Filter::Nearest, Filter::Bilinear, Filter::Sharp, Filter::Tracks] {
                 validated(&lit_shader(surface, &page, filter));
                 validated(&visibility_shader(surface, &page, filter));
                 validated(&lamp_visibility_shader(surface, &page, filter));

@@ -56,6 +56,19 @@ impl Footprint {
         [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
     }
 
+    /// How much each texel counts in [`Self::blend`], in `f32` and with what stands between them; none where the darkest
+    /// of them counts.
+    pub fn blend_weights(&self) -> Option<[f32; 4]> {
+        match self.reach {
+            None => {
+                let [x, y] = self.fraction.as_vec2().to_array();
+                Some([(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y])
+            }
+            Some(Reach { takes_darkest: true, .. }) => None,
+            Some(Reach { weights, .. }) => Some(weights),
+        }
+    }
+
     /// The same among walls: `codes` are a page's, in row order ([`super::find_walls`]).
     pub fn beside_walls(self, codes: &[[u8; 2]]) -> Self {
         let [upper_left, upper_right, lower_left, _] = self.texels;

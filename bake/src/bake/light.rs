@@ -1,5 +1,6 @@
 //! The lights of a bake (the sun, a lamp, the sky) and their statistics over all pages.
 
+use super::tracks::TrackJob;
 use crate::ambient::{AmbientEngine, Mismatch};
 use crate::disk::manifest::{ErrorEntry, LampStats};
 use crate::loss::LossStatistics;
@@ -51,6 +52,8 @@ pub(super) struct LightJob<'a> {
     pub duration_min: f64,
     /// The step that is reported while its intervals are found.
     pub step: BakeStep,
+    /// How its shadow tracks are found, if they are.
+    pub tracks: Option<TrackJob<'a>>,
 }
 
 /// Statistics of the sun or a lamp so far, over all pages.

@@ -12,6 +12,7 @@ mod occluders;
 mod pages;
 mod prepare;
 mod timing;
+mod tracks;
 
 pub use baked::Bake;
 pub use error::BakeError;
@@ -26,11 +27,11 @@ use crate::lamp::LampPath;
 use crate::maps::Lane;
 use crate::plan::{Effect, LayersNeeded};
 use crate::progress::{BakeStep, Progress};
-use crate::scene::{self, Scene, ShadingNormals};
+use crate::scene::{self, Components, Scene, ShadingNormals};
 use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
 use crate::sun::SunPath;
 use crate::trace::Tracer;
-use crate::visibility::Engine;
+use crate::visibility::{Engine, ExactEngine, OccluderFinder};
 use crate::warning::Warning;
 use baked::{PageFiles, PageSink, UnpagedBake, stored_bits, write_unpaged};
 use entries::{instance_entries, loss_warnings, manifest_of};
@@ -42,6 +43,7 @@ use pages::PageBaker;
 use prepare::prepare_scene;
 use std::path::Path;
 use timing::{check_cancelled, timed};
+use tracks::TrackJob;
 
 /// The result of a finished bake.
 #[derive(Debug, Clone)]
@@ -137,12 +139,17 @@ fn bake_prepared(
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let sun =
-        engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, step: BakeStep::Visibility });
+    let track_path = path.filter(|_| settings.finds_tracks);
+    let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
+    let parts = track_path.map(|_| Components::new(scene, &geometry));
+    let finder = track_engine.as_ref().zip(parts.as_ref()).map(|(engine, parts)| OccluderFinder::new(engine, parts));
+    let tracks = finder.as_ref().zip(path).map(|(finder, path)| TrackJob { finder, width_t: path.width_t(0.5) });
+    let step = BakeStep::Visibility;
+    let sun = engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, step, tracks });
     let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
     let lamp = lamp.as_ref().zip(lamp_engine.as_deref()).map(|(path, engine)| {
         let duration_min = path.duration_min();
-        LightJob { engine, lanes: &[Lane::CENTRE], duration_min, step: BakeStep::Lamp }
+        LightJob { engine, lanes: &[Lane::CENTRE], duration_min, step: BakeStep::Lamp, tracks: None }
     });
     let normals = ShadingNormals::new(scene);
     let request = settings.ambient.as_ref();

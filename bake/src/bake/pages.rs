@@ -4,6 +4,7 @@ use super::baked::PageSink;
 use super::error::BakeError;
 use super::light::{AmbientAccount, LaneEncoders, LightAccount, LightJob, Lights};
 use super::timing::{check_cancelled, timed};
+use super::tracks::TrackBaker;
 use crate::atlas::{self, Atlas, GutterTexel, PageSamples, WallFinder};
 use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, Stats};
@@ -14,6 +15,7 @@ use crate::progress::{BakeStep, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::trace::Tracer;
+use crate::tracks::PageTracks;
 use crate::visibility::{self, Answers, BuriedPoints, IntervalTable, Intervals, Work, fill_buried};
 use std::time::Instant;
 
@@ -117,20 +119,20 @@ impl<'a> PageBaker<'a> {
         let texels = PageTexels { samples: &samples, order: &order, gutter: &gutter, walls: walls.as_deref() };
         let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
-        let lanes = sun.map(|sun| self.bake_light(index, &sun, &mut account, texels)).transpose()?;
+        let sun = sun.map(|sun| self.bake_light(index, &sun, &mut account, texels)).transpose()?;
         self.sun = account;
         let mut account = std::mem::take(&mut self.lamp);
         let lamp = lamp.map(|lamp| self.bake_light(index, &lamp, &mut account, texels)).transpose()?;
         self.lamp = account;
         check_cancelled(self.progress)?;
-        let lamp = lamp.map(|lanes| lanes.into_iter().flat_map(|lane| lane.layers).collect());
+        let (lanes, tracks) = sun.unwrap_or_default();
+        let lamp = lamp.map(|(lanes, _)| lanes.into_iter().flat_map(|lane| lane.layers).collect());
         let numbers = self.bake_ambient(index, texels)?;
         let request = self.settings.ambient.as_ref();
         let ambient =
             numbers.as_ref().zip(request).map(|(page, request)| AmbientMaps::of(page).rounded_to(request.bits));
         self.occlusion.extend(ambient.as_ref().map(|ambient| OcclusionPage::new(size, ambient)));
-        let maps =
-            PageMaps { width: size.width, height: size.height, lanes: lanes.unwrap_or_default(), lamp, ambient, walls };
+        let maps = PageMaps { width: size.width, height: size.height, lanes, lamp, ambient, walls, tracks };
         let ambient_numbers = numbers.filter(|_| request.is_some_and(|request| request.exr));
         Ok(BakedPage { maps, ambient_numbers, loss_map: self.loss_map.take() })
     }
@@ -142,7 +144,7 @@ impl<'a> PageBaker<'a> {
         light: &LightJob,
         account: &mut LightAccount,
         texels: PageTexels,
-    ) -> Result<Vec<LaneMaps>, BakeError> {
+    ) -> Result<(Vec<LaneMaps>, Option<PageTracks>), BakeError> {
         let (tables, work) = self.solve_visibility(light, texels.samples, texels.order).ok_or(BakeError::Cancelled)?;
         account.work = account.work + work;
         Ok(self.encode(page, light, account, texels, &tables))
@@ -166,14 +168,30 @@ impl<'a> PageBaker<'a> {
         })
     }
 
+    fn find_tracks(&mut self, baker: TrackBaker) -> Option<PageTracks> {
+        let started = Instant::now();
+        let found = baker.find(self.scene, self.geometry);
+        let seconds = started.elapsed().as_secs_f64();
+        let stats = self.stats.tracks.get_or_insert_default();
+        self.stats.seconds.visibility += seconds;
+        stats.seconds += seconds;
+        let (tracks, counts) = found?;
+        stats.texels += counts.texels;
+        stats.crowded_texels += counts.crowded_texels;
+        stats.spans += tracks.spans.len() as u64;
+        stats.gpu_bytes += tracks.gpu_bytes();
+        Some(tracks)
+    }
+
     fn encode(
         &mut self,
         page: usize,
         light: &LightJob,
         account: &mut LightAccount,
-        PageTexels { samples, order, gutter, walls }: PageTexels,
+        page_texels: PageTexels,
         tables: &[IntervalTable],
-    ) -> Vec<LaneMaps> {
+    ) -> (Vec<LaneMaps>, Option<PageTracks>) {
+        let PageTexels { samples, order, gutter, walls } = page_texels;
         let PageSamples { samples: texels } = samples;
         self.progress.start(BakeStep::Encode, texels.len() as u64);
         let started = Instant::now();
@@ -182,10 +200,14 @@ impl<'a> PageBaker<'a> {
         let answers = Answers { tables, lane_count: light.lanes.len() };
         let filled = fill_buried(&self.buried, size, samples, order, walls, answers);
         account.filled_texels += filled.len() as u64;
+        let mut track_baker = light.tracks.map(|job| TrackBaker::new(job, size, page_texels));
         let mut answers = tables.iter().flat_map(IntervalTable::iter);
         for (place, sample) in order.iter().map(|&i| &texels[i as usize]).enumerate() {
             let own: Vec<Intervals> = answers.by_ref().take(light.lanes.len()).collect();
             let lists = filled.get(&place).unwrap_or(&own);
+            if let Some(baker) = &mut track_baker {
+                baker.add(&lists[light.lanes.len() / 2], filled.contains_key(&place));
+            }
             let loss = encoders.set(sample.texel as usize, lists, account);
             if let Some(map) = &mut self.loss_map {
                 map.add(sample.texel as usize, &loss, light.duration_min);
@@ -196,6 +218,6 @@ impl<'a> PageBaker<'a> {
             encoders.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
         }
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
-        encoders.finish()
+        (encoders.finish(), track_baker.and_then(|baker| self.find_tracks(baker)))
     }
 }

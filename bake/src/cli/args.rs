@@ -184,6 +184,12 @@ pub struct CostArgs {
     /// they soften in as many steps. Bytes grow with the number, and so does the time of the rays engine.
     #[arg(long, value_name = "1|3|5", value_parser = parse_lanes, default_value = "1")]
     pub lanes: usize,
+    /// Find shadow tracks as well: when each thing that hides the sun starts and ends to, by itself.
+    ///
+    /// `sunplay --filter tracks` then draws shadows far narrower than texels, as those of fences, as clean lines. Takes
+    /// up to a few times the time of the intervals, and bytes where shadows are dense: see `tracks` in the summary.
+    #[arg(long)]
+    pub tracks: bool,
     /// How to find the times: exact, rays:N or bisect:N, N from 2 to 65536. [default: exact]
     ///
     /// exact finds every edge in closed form and misses nothing. The others are for comparison. rays:N traces rays to N

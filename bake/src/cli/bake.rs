@@ -97,6 +97,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
+        finds_tracks: cost.tracks,
         smooth_terminator: !args.flat_terminator,
         bakes_intervals,
         ambient: ambient(args, preset.ambient)?,
@@ -111,7 +112,8 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
 
 /// Refuses what is about a sun where the path is a lamp's.
 fn check_lamp_alone(args: &BakeArgs, bakes_intervals: bool) -> Result<(), Failure> {
-    let of_sun = [(args.cost.lanes > 1, "--lanes"), (args.sun.day.north.is_some(), "--north")];
+    let of_sun =
+        [(args.cost.lanes > 1, "--lanes"), (args.cost.tracks, "--tracks"), (args.sun.day.north.is_some(), "--north")];
     if let Some((_, option)) = of_sun.into_iter().find(|(is_given, _)| *is_given) {
         return Err(Failure::usage(format!(
             "{option} is about the sun, and --path is of a lamp that is baked instead: leave {option} out, or give the \
@@ -162,6 +164,7 @@ fn times_flag(args: &BakeArgs) -> Option<&'static str> {
         ("--bits", cost.bits.is_some()),
         ("--layers", cost.layers.is_some()),
         ("--lanes", cost.lanes > 1),
+        ("--tracks", cost.tracks),
         ("--engine", cost.engine.is_some()),
         ("--edge-seconds", cost.edge_seconds.is_some()),
         ("--flat-terminator", args.flat_terminator),

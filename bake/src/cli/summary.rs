@@ -6,7 +6,7 @@ use sunbake::Prepared;
 use sunbake::atlas::Density;
 use sunbake::disk::manifest::{
     AmbientEntry, AtlasEntry, EffectEntry, ErrorEntry, LampEntry, LampKeyEntry, LossEntry, Manifest, PathEntry,
-    SeamEntry, StepSeconds,
+    SeamEntry, StepSeconds, TrackStats,
 };
 use sunbake::settings::BakeSettings;
 use sunbake::words::counted;
@@ -40,6 +40,9 @@ pub fn of(manifest: &Manifest) -> String {
         lines.line("rounding", loss(&manifest.error.quantisation_min));
         lines.line("merging", merging(&manifest.error));
         lines.line("engine", engine(manifest));
+        if let Some(stats) = &manifest.stats.tracks {
+            lines.line("tracks", tracks(stats, manifest.stats.texels));
+        }
     }
     if let Some(entry) = &manifest.lamp {
         lines.line("lamp times", lamp_times(manifest, entry));
@@ -141,6 +144,18 @@ fn lamp_times(manifest: &Manifest, entry: &LampEntry) -> String {
     let mean = stats.intervals as f64 / (manifest.stats.texels as f64).max(1.0);
     let layers = counted(layers as u64, "layer");
     format!("{layers}; {mean:.2} intervals a texel, {} at most; found by {}", stats.most_intervals, stats.engine)
+}
+
+fn tracks(stats: &TrackStats, texels: u64) -> String {
+    let share = |count: u64| 100.0 * count as f64 / texels.max(1) as f64;
+    format!(
+        "{:.0} % of texels have some, {:.1} % too many; {:.1} spans a texel, {:.1} MiB on a GPU, {:.1} s",
+        share(stats.texels),
+        share(stats.crowded_texels),
+        stats.spans as f64 / texels.max(1) as f64,
+        stats.gpu_bytes as f64 / f64::from(1 << 20),
+        stats.seconds
+    )
 }
 
 /// Whether times at which the sun is seen are stored.

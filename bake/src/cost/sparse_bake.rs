@@ -114,7 +114,15 @@ impl SparseTexels {
         // A page one texel high, with one uncovered texel at the end.
         let has_walls = self.blends.iter().any(|blend| blend.reach.is_some());
         let walls = has_walls.then(|| vec![[OPEN; 2]; self.samples.len() + 1]);
-        let page = PageMaps { width: self.samples.len() as u32 + 1, height: 1, lanes, lamp: None, ambient, walls };
+        let page = PageMaps {
+            width: self.samples.len() as u32 + 1,
+            height: 1,
+            lanes,
+            lamp: None,
+            ambient,
+            walls,
+            tracks: None,
+        };
         let gpu_bytes = page.gpu_bytes(settings.bits) / u64::from(page.width) * page_texels;
         let played =
             PlayedMaps { pages: std::slice::from_ref(&page), bits: settings.bits, path: Some(workload.path()) };

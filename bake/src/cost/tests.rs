@@ -44,7 +44,7 @@ fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
         encoder.set(texel, &Intervals::from_unsorted(lit.to_vec()));
     }
     let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
-    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None, walls: None };
+    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None, walls: None, tracks: None };
     let blend = Footprint { texels: [0, 1, 2, 3], fraction: DVec2::splat(0.5), reach: None };
     let played = PlayedMaps { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
     played.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min

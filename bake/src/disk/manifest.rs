@@ -174,6 +174,10 @@ pub struct AtlasEntry {
     /// alpha (to the lower), of the codes that [`crate::atlas::wall_code`] makes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<String>,
+    /// The sun's shade occluder by occluder, where it was asked for. A reader may ignore it: `lanes` say when texels are
+    /// lit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tracks: Option<TracksEntry>,
     /// Ambient visibility, 0 is occluded: a grey PNG; or, if some texel has two sides, an RGB PNG with the front in
     /// green, the back in blue and, for viewers, the greater of the two in red.
     pub ao: Option<String>,
@@ -192,6 +196,19 @@ pub struct AtlasEntry {
     /// Where storing lost minutes on this page, if requested. Not needed for playback.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loss_map: Option<LossMapEntry>,
+}
+
+/// Shadow tracks of a page ([`crate::tracks`]).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TracksEntry {
+    /// Where each texel's spans are: an RGBA PNG of 8 bits, as large as the page. The four are the bytes of one number,
+    /// red the lowest: 64 times the index of the first span, plus how many there are, at most 63.
+    pub lists: String,
+    /// The spans, row after row: an RGB PNG of 16 bits, 2048 wide. Red is the number of the track; green is when its
+    /// shade starts and blue when it ends, q / 65535 of the path. A texel's ascend by track.
+    pub spans: String,
+    /// How many spans there are. Zeros fill the last row.
+    pub count: u32,
 }
 
 /// Sky visibility: with sky radiance `L = sum of L_i Y_i`, a diffuse surface reflects `albedo * sum of L_i T_i`.
@@ -384,6 +401,9 @@ pub struct Stats {
     pub filled_texels: u64,
     /// Most lit intervals of any texel along one lane.
     pub most_intervals: u64,
+    /// What came of the search for shadow tracks, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tracks: Option<TrackStats>,
     /// Engine and its parameters, as given on the command line.
     pub engine: String,
     /// Rays traced for times; 0 for the exact engine.
@@ -400,6 +420,21 @@ pub struct Stats {
     pub threads: usize,
     /// Wall-clock seconds of each step.
     pub seconds: StepSeconds,
+}
+
+/// What came of the search for shadow tracks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackStats {
+    /// Texels that have tracks: shade moves at them or beside them.
+    pub texels: u64,
+    /// Texels that have more spans than can be stored, and so merged shade.
+    pub crowded_texels: u64,
+    /// Spans that are stored, those of merged shade among them.
+    pub spans: u64,
+    /// Bytes on a GPU.
+    pub gpu_bytes: u64,
+    /// Seconds of the search; also among those of lit intervals.
+    pub seconds: f64,
 }
 
 /// Wall-clock seconds of each step.

@@ -8,6 +8,7 @@ pub mod manifest;
 mod page;
 mod png_file;
 pub mod read;
+mod tracks;
 pub mod write;
 mod write_ambient;
 mod write_loss;

@@ -1,6 +1,6 @@
 //! A page of a baked set in memory, and the names that its files have on disk.
 
-use super::manifest::{AtlasEntry, LampMapsEntry, LaneEntry, LayerEntry, LossMapEntry, SkyMapsEntry};
+use super::manifest::{AtlasEntry, LampMapsEntry, LaneEntry, LayerEntry, LossMapEntry, SkyMapsEntry, TracksEntry};
 use crate::ambient::AmbientPage;
 use crate::loss_map::LossMap;
 use crate::maps::{AmbientMaps, LaneMaps, LayerMaps, PageMaps};
@@ -19,7 +19,7 @@ pub struct BakedPage {
 impl BakedPage {
     /// The page's entry in the manifest: its size, and its files' names as page `index` of a set.
     pub fn entry(&self, index: usize) -> AtlasEntry {
-        let PageMaps { width, height, lanes, lamp, ambient, walls } = &self.maps;
+        let PageMaps { width, height, lanes, lamp, ambient, walls, tracks } = &self.maps;
         let lane = |(k, LaneMaps { lane, layers }): (usize, &LaneMaps)| LaneEntry {
             offset_deg: lane.offset_rad.to_degrees(),
             weight: lane.weight,
@@ -33,6 +33,11 @@ impl BakedPage {
                 .as_ref()
                 .map(|layers| LampMapsEntry { layers: layer_entries(&format!("page{index}_lamp"), layers) }),
             walls: walls.as_ref().map(|_| format!("page{index}_walls.png")),
+            tracks: tracks.as_ref().map(|tracks| TracksEntry {
+                lists: format!("page{index}_track_lists.png"),
+                spans: format!("page{index}_track_spans.png"),
+                count: tracks.spans.len() as u32,
+            }),
             loss_map: self.loss_map.as_ref().map(|map| loss_map_entry(index, map)),
             ..AtlasEntry::default()
         };

@@ -3,6 +3,7 @@
 use super::manifest::{
     ArcEntry, AtlasEntry, FORMAT, InstanceEntry, LampEntry, LampKeyEntry, LayerEntry, Manifest, PathEntry, VERSION,
 };
+use super::tracks::read_tracks;
 use crate::lamp::{LampError, LampKey, LampPath};
 use crate::maps::{AmbientMaps, AmbientSide, Bits, Lane, LaneMaps, LayerMaps, PageMaps};
 use crate::scene::{self, LoadError, LoadLimits, Scene};
@@ -148,6 +149,7 @@ fn check_names(manifest: &Manifest) -> Result<(), String> {
         );
         names.extend(atlas.sky.iter().flat_map(|sky| sky.front.iter().chain(sky.back.iter().flatten())));
         names.extend(atlas.loss_map.iter().flat_map(|map| [&map.picture, &map.numbers]));
+        names.extend(atlas.tracks.iter().flat_map(|tracks| [&tracks.lists, &tracks.spans]));
         let layers = atlas.lanes.iter().flat_map(|lane| &lane.layers);
         let of_lamp = atlas.lamp.iter().flat_map(|lamp| &lamp.layers);
         names.extend(layers.chain(of_lamp).flat_map(|layer| [&layer.rise, &layer.fall]));
@@ -198,7 +200,8 @@ fn read_page(folder: &Path, atlas: &AtlasEntry, bits: Bits) -> Result<PageMaps, 
     let lamp = atlas.lamp.as_ref().map(|lamp| read_layers(folder, &lamp.layers, size, bits)).transpose()?;
     let ambient = read_ambient(folder, atlas, size)?;
     let walls = atlas.walls.as_ref().map(|name| read_walls(&folder.join(name), size)).transpose()?;
-    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ambient, walls })
+    let tracks = atlas.tracks.as_ref().map(|entry| read_tracks(folder, entry, size)).transpose()?;
+    Ok(PageMaps { width: size.0, height: size.1, lanes, lamp, ambient, walls, tracks })
 }
 
 fn read_ambient(folder: &Path, atlas: &AtlasEntry, size: (u32, u32)) -> Result<Option<AmbientMaps>, ReadError> {
@@ -232,7 +235,7 @@ fn read_layers(
 }
 
 /// Decodes a texture. A texture of another size is an error before its texels are allocated.
-fn decode(path: &Path, (width, height): (u32, u32)) -> Result<image::DynamicImage, ReadError> {
+pub(super) fn decode(path: &Path, (width, height): (u32, u32)) -> Result<image::DynamicImage, ReadError> {
     let wrong = |reason: String| ReadError::Texture { path: path.to_owned(), reason };
     let io = |source| ReadError::Io { path: path.to_owned(), source };
     let mut reader = image::ImageReader::open(path).map_err(io)?;

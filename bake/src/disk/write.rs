@@ -67,6 +67,9 @@ impl SetWriter {
             };
             self.write_file(name, write)?;
         }
+        if let (Some(names), Some(tracks)) = (&entry.tracks, &page.maps.tracks) {
+            self.write_tracks(names, tracks, size)?;
+        }
         if let (Some(names), Some(map)) = (&entry.loss_map, &page.loss_map) {
             self.write_loss_map(names, map)?;
         }
@@ -124,7 +127,7 @@ mod tests {
         let mut of_lamp = layer.clone();
         of_lamp.rise[2] = [7; 4];
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![layer.clone(), layer] }];
-        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None, walls: None }
+        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None, walls: None, tracks: None }
     }
 
     fn manifest(atlas: AtlasEntry, bits: Bits) -> Manifest {

@@ -20,6 +20,8 @@ pub use evaluate::{edge_sample, hard_visibility, sharpened, soft_visibility};
 pub use gpu_bytes::{AmbientTextures, GpuTexel};
 pub use lanes::Lane;
 
+use crate::tracks::PageTracks;
+
 /// Bits of a stored time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bits {
@@ -117,6 +119,8 @@ pub struct PageMaps {
     /// What stands on the ways from each texel to its right and its lower neighbour ([`crate::atlas::wall_code`]),
     /// where anything does.
     pub walls: Option<Vec<[u8; 2]>>,
+    /// Shade of the sun occluder by occluder, along its centre, if it was asked for.
+    pub tracks: Option<PageTracks>,
 }
 
 /// Lengths of the encoded intervals of a texel, for tests and for `sunbake texels`: what is stored, as times.

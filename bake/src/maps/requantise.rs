@@ -14,6 +14,8 @@ impl PageMaps {
         if bits == Bits::Sixteen {
             self.lanes.iter_mut().flat_map(|lane| &mut lane.layers).for_each(requantise);
             self.lamp.iter_mut().flatten().for_each(requantise);
+            // Their times have 16 bits.
+            self.tracks = None;
         }
         self
     }
@@ -39,7 +41,7 @@ mod tests {
             encoder.set(texel, &Intervals::from_unsorted(list.clone()));
         }
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
-        PageMaps { width: lists.len() as u32, height: 1, lanes, lamp: None, ambient: None, walls: None }
+        PageMaps { width: lists.len() as u32, height: 1, lanes, lamp: None, ambient: None, walls: None, tracks: None }
     }
 
     #[test]

@@ -1,72 +1,51 @@
-//! The spans of every texel: which occluders matter, and when each of them hides the sun.
+//! The spans of texels: which occluders matter, and when each of them hides the sun.
 
+use super::{FoundSpan, FoundSpans, OWN_PLANE};
 use crate::atlas::{Around, PageSize, SurfacePoint};
 use crate::intervals::Intervals;
 use crate::visibility::{OccluderFinder, OccluderSession};
 use rayon::prelude::*;
 
-/// The occluder that stands for the surface's own plane and the horizon.
-pub const OWN_PLANE: u32 = u32::MAX;
-
 /// Texels that one session finds in a row.
 const RUN: usize = 256;
 /// What two ends of shade may be apart and still be one, in path time: rounding.
 const TOUCH: f64 = 1e-9;
-
-/// A span of shade by one occluder.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FoundSpan {
-    /// The occluder's part, or [`OWN_PLANE`].
-    pub part: u32,
-    /// Start and end, path time.
-    pub shade: [f64; 2],
-}
-
-/// Spans of the texels of a page, each texel's by ascending part and time.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct FoundSpans {
-    /// For each texel, where its spans begin; one more at the end.
-    pub first: Vec<u32>,
-    /// All spans.
-    pub spans: Vec<FoundSpan>,
-}
-
-impl FoundSpans {
-    /// Of a texel.
-    pub fn of_texel(&self, texel: usize) -> &[FoundSpan] {
-        &self.spans[self.first[texel] as usize..self.first[texel + 1] as usize]
-    }
-}
+/// The place of a texel that is not among those asked for.
+const ABSENT: u32 = u32::MAX;
 
 /// Shade by parts: each with its spans.
 type Shades = Vec<(u32, Intervals)>;
 
-/// Finds the spans of every texel that has a point. Those shorter than `least_t` are left out: they are too short to be
-/// seen. `walls` are the page's.
+/// Finds the spans of some texels of a page, in their order; each has a `point`. Spans shorter than `least_t`, in path
+/// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and of
+/// that of texels around it, if they are asked for as well and none of the page's `walls` parts them.
 pub fn find_spans(
     finder: &OccluderFinder,
+    texels: &[u32],
+    point: &(dyn Fn(u32) -> SurfacePoint + Sync),
     size: PageSize,
-    points: &[Option<SurfacePoint>],
     walls: Option<&[[u8; 2]]>,
     least_t: f64,
 ) -> FoundSpans {
+    let around = Around::new(size, walls);
     let of_texels = |find: &(dyn Fn(&mut OccluderSession, usize, &SurfacePoint) -> Shades + Sync)| -> Vec<Shades> {
-        let of_run = |run: usize| {
+        let of_run = |(run, some): (usize, &[u32])| {
             let mut session = finder.session();
-            let texels = run * RUN..points.len().min((run + 1) * RUN);
-            let of_texel =
-                |texel: usize| points[texel].as_ref().map_or_else(Vec::new, |point| find(&mut session, texel, point));
-            texels.map(of_texel).collect::<Vec<_>>()
+            let of_texel = |(i, &texel): (usize, &u32)| find(&mut session, run * RUN + i, &point(texel));
+            some.iter().enumerate().map(of_texel).collect::<Vec<_>>()
         };
-        (0..points.len().div_ceil(RUN)).into_par_iter().flat_map_iter(of_run).collect()
+        texels.par_chunks(RUN).enumerate().flat_map_iter(of_run).collect()
     };
     let covers = of_texels(&|session, _, point| cover(session, point, least_t));
-    let around = Around::new(size, walls);
-    let all = of_texels(&|session, texel, point| {
-        let mut parts: Vec<u32> = around.texels(texel).flat_map(|other| covers[other].iter().map(|s| s.0)).collect();
+    let mut place = vec![ABSENT; texels.iter().max().map_or(0, |&last| last as usize + 1)];
+    texels.iter().zip(0..).for_each(|(&texel, index)| place[texel as usize] = index);
+    let cover_of = |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| &covers[i as usize]);
+    let all = of_texels(&|session, index, point| {
+        let others = around.texels(texels[index] as usize).filter_map(cover_of);
+        let mut parts: Vec<u32> = others.flat_map(|cover| cover.iter().map(|shade| shade.0)).collect();
         parts.sort_unstable();
         parts.dedup();
-        let own = &covers[texel];
+        let own = &covers[index];
         let facing = session.facing(point);
         let mut shades: Shades = own.clone();
         for part in parts.into_iter().filter(|part| *part != OWN_PLANE) {
@@ -77,15 +56,12 @@ pub fn find_spans(
         shades.sort_by_key(|(part, _)| *part);
         shades
     });
-    let mut found = FoundSpans { first: Vec::with_capacity(points.len() + 1), spans: Vec::new() };
+    let mut found = FoundSpans::default();
     for shades in all {
-        found.first.push(found.spans.len() as u32);
-        let of_part = |(part, shade): (u32, Intervals)| {
-            shade.as_slice().iter().map(|&shade| FoundSpan { part, shade }).collect::<Vec<_>>()
-        };
-        found.spans.extend(shades.into_iter().flat_map(of_part));
+        let spans =
+            shades.iter().flat_map(|(part, shade)| shade.as_slice().iter().map(|&shade| FoundSpan::new(*part, shade)));
+        found.push(spans);
     }
-    found.first.push(found.spans.len() as u32);
     found
 }
 
@@ -100,7 +76,6 @@ fn shade_of(
     let shade = facing.without(&session.alone(point, part));
     shade.longer_than(least_t)
 }
-
 /// Parts that together hide the sun from a point whenever it is hidden, none of which can be left out, and when the
 /// surface's own plane does.
 fn cover(session: &mut OccluderSession, point: &SurfacePoint, least_t: f64) -> Shades {

@@ -4,49 +4,88 @@
 //! others match best. (Of the pairs of texels under a fence, 97 to 99 % have as many.) Matches to the right and to the
 //! lower texel make sets. Where a set comes round to a texel that it holds already, with another span, that span is cut
 //! off. Numbers are 16 bits and need only differ between tracks that meet in four texels.
+//!
+//! Merged shade is nobody's track: its numbers say which of four texels it is of, and so never meet their own.
 
-use super::find::{FoundSpan, FoundSpans};
-use super::{PageTracks, TrackSpan};
+use super::{FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackSpan};
 use crate::atlas::PageSize;
-use crate::maps::Bits;
 use crate::scene::root;
 use smallvec::SmallVec;
-use std::collections::HashMap;
 
-/// Numbers of tracks that are used.
-const NUMBERS: u32 = u16::MAX as u32;
+/// Numbers of tracks. Those from here on are of merged shade.
+const NUMBERS: u32 = (1 << 16) - 4 * MOST_SPANS as u32;
 /// Rounds in which tracks of one number that meet are told apart; more than a few are never needed.
 const ROUNDS: usize = 32;
 
-/// Links the spans of a page and numbers their tracks. `is_linked` says whether the ways from a texel to the right and
-/// down are open.
-pub fn number_tracks(found: &FoundSpans, size: PageSize, is_linked: impl Fn(usize, usize) -> bool) -> PageTracks {
-    let (width, height) = (size.width as usize, size.height as usize);
+/// The texels of a page, and whose spans each of them has.
+pub struct Linked<'a> {
+    /// In texels.
+    pub size: PageSize,
+    /// For each texel, the one whose spans it has: itself, or, in a gutter, the one that it copies.
+    pub source: &'a [u32],
+    /// Whether the way from a texel to the right (0) or down (1) is open.
+    pub is_open: &'a (dyn Fn(usize, usize) -> bool + Sync),
+}
+
+impl Linked<'_> {
+    fn width(&self) -> usize {
+        self.size.width as usize
+    }
+
+    /// Pairs of texels side by side, one above the other, with an open way from the first to the second.
+    pub fn pairs(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        let width = self.width();
+        (0..self.source.len()).flat_map(move |texel| {
+            let right = (texel % width + 1 < width).then_some((0, texel + 1));
+            let lower = (texel + width < self.source.len()).then_some((1, texel + width));
+            let open = [right, lower].into_iter().flatten().filter(move |&(way, _)| (self.is_open)(texel, way));
+            open.map(move |(_, other)| [texel, other])
+        })
+    }
+
+    /// The four texels of each quad, each by the one whose spans it has.
+    fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
+        let (width, height) = (self.width(), self.size.height as usize);
+        let corners = (0..height.saturating_sub(1)).flat_map(move |y| (0..width - 1).map(move |x| y * width + x));
+        corners.map(move |corner| {
+            [corner, corner + 1, corner + width, corner + width + 1].map(|texel| self.source[texel] as usize)
+        })
+    }
+
+    /// Which of the four texels of any quad it is.
+    fn corner(&self, texel: usize) -> usize {
+        texel % self.width() % 2 + 2 * (texel / self.width() % 2)
+    }
+}
+
+/// Links the spans of a page and numbers their tracks. `found` has spans of every texel that is its own source, at most
+/// [`MOST_SPANS`] of each.
+pub fn number_tracks(found: &FoundSpans, page: &Linked) -> PageTracks {
     let mut parent: Vec<u32> = (0..found.spans.len() as u32).collect();
-    for texel in 0..width * height {
-        let right = (texel % width + 1 < width).then_some((0, texel + 1));
-        let lower = (texel / width + 1 < height).then_some((1, texel + width));
-        for (way, other) in [right, lower].into_iter().flatten() {
-            if !is_linked(texel, way) {
-                continue;
-            }
-            for [a, b] in matches(found.of_texel(texel), found.of_texel(other)) {
-                let [a, b] = [found.first[texel] + a, found.first[other] + b].map(|span| root(&mut parent, span));
-                parent[a.max(b) as usize] = a.min(b);
-            }
+    for [texel, other] in page.pairs().map(|pair| pair.map(|texel| page.source[texel] as usize)) {
+        for [a, b] in matches(found.of_texel(texel), found.of_texel(other)) {
+            let [a, b] = [found.first[texel] + a, found.first[other] + b].map(|span| root(&mut parent, span));
+            parent[a.max(b) as usize] = a.min(b);
         }
     }
     let mut track: Vec<u32> = (0..found.spans.len() as u32).map(|span| root(&mut parent, span)).collect();
     cut_off_second_spans(found, &mut track);
-    let number = numbers(found, size, &track);
-    let code = |t: f64| Bits::Sixteen.encode(t);
+    let number = numbers(found, page, &track);
     let mut tracks = PageTracks::default();
-    for texel in 0..width * height {
-        let range = found.first[texel] as usize..found.first[texel + 1] as usize;
+    for (texel, source) in page.source.iter().map(|&source| source as usize).enumerate() {
+        let range = found.first[source] as usize..found.first[source + 1] as usize;
+        let is_copy = source < texel && !found.of_texel(source).iter().any(|span| span.part == MERGED);
+        if let Some(own) = tracks.ranges.get(source).copied().filter(|_| is_copy) {
+            tracks.ranges.push(own);
+            continue;
+        }
+        let merged = NUMBERS + (page.corner(texel) * MOST_SPANS) as u32;
         let mut own: SmallVec<[TrackSpan; 16]> = range
-            .map(|index| {
-                let [start, end] = found.spans[index].shade.map(code);
-                TrackSpan { track: number[&track[index]], start, end }
+            .zip(merged..)
+            .map(|(index, merged)| {
+                let FoundSpan { part, start, end } = found.spans[index];
+                let track = if part == MERGED { merged as u16 } else { number[track[index] as usize] };
+                TrackSpan { track, start, end }
             })
             .collect();
         own.sort_unstable_by_key(|span| span.track);
@@ -65,7 +104,7 @@ fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 16]>
         let end =
             |spans: &[FoundSpan], from: usize| spans[from..].partition_point(|s| s.part == spans[from].part) + from;
         let (a_end, b_end) = (end(some, a), end(others, b));
-        if x == y {
+        if x == y && x != MERGED {
             let own = aligned(&some[a..a_end], &others[b..b_end]);
             pairs.extend(own.into_iter().map(|[i, j]| [a as u32 + i, b as u32 + j]));
         }
@@ -83,16 +122,16 @@ fn aligned(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 8]> 
         return (0..some.len() as u32).map(|i| [i, i]).collect();
     }
     let cost = |i: usize, j: usize| {
-        let ([a, b], [c, d]) = (some[i].shade, others[j].shade);
-        (a - c).abs() + (b - d).abs()
+        let (one, other) = (some[i], others[j]);
+        u32::from(one.start.abs_diff(other.start)) + u32::from(one.end.abs_diff(other.end))
     };
     // least[i][j]: of the first i of `some` with the first j of the others.
     let width = others.len() + 1;
-    let mut least = vec![f64::INFINITY; (some.len() + 1) * width];
-    least[..width].fill(0.0);
+    let mut least = vec![u32::MAX; (some.len() + 1) * width];
+    least[..width].fill(0);
     for i in 1..=some.len() {
         for j in i..width {
-            let matched = least[(i - 1) * width + j - 1] + cost(i - 1, j - 1);
+            let matched = least[(i - 1) * width + j - 1].saturating_add(cost(i - 1, j - 1));
             least[i * width + j] = matched.min(least[i * width + j - 1]);
         }
     }
@@ -120,40 +159,36 @@ fn cut_off_second_spans(found: &FoundSpans, track: &mut [u32]) {
     }
 }
 
-/// The number of each track, so that those that meet within four texels have different ones.
-fn numbers(found: &FoundSpans, size: PageSize, track: &[u32]) -> HashMap<u32, u16> {
-    let mut number = HashMap::new();
+/// For each span that is the first of its track, the track's number: those that meet within four texels differ.
+fn numbers(found: &FoundSpans, page: &Linked, track: &[u32]) -> Vec<u16> {
+    let mut number = vec![0u16; track.len()];
     let mut next = 0u32;
-    for own in track {
-        number.entry(*own).or_insert_with(|| {
-            next += 1;
-            ((next - 1) % NUMBERS) as u16
-        });
+    let is_track = |index: usize| found.spans[index].part != MERGED;
+    for index in (0..track.len()).filter(|&index| track[index] as usize == index && is_track(index)) {
+        number[index] = (next % NUMBERS) as u16;
+        next += 1;
     }
     if next <= NUMBERS {
         return number;
     }
-    let (width, height) = (size.width as usize, size.height as usize);
     let of_texel = |texel: usize| &track[found.first[texel] as usize..found.first[texel + 1] as usize];
+    let (mut all, mut seen): (SmallVec<[u32; 64]>, SmallVec<[u16; 64]>) = Default::default();
     for _ in 0..ROUNDS {
         let mut is_settled = true;
-        for y in 0..height.saturating_sub(1) {
-            for x in 0..width.saturating_sub(1) {
-                let corner = y * width + x;
-                let mut all: SmallVec<[u32; 64]> = SmallVec::new();
-                let four = [corner, corner + 1, corner + width, corner + width + 1];
-                four.into_iter().for_each(|texel| all.extend_from_slice(of_texel(texel)));
-                all.sort_unstable();
-                all.dedup();
-                let mut seen: SmallVec<[u16; 64]> = SmallVec::new();
-                for own in all {
-                    while seen.contains(&number[&own]) {
-                        next += 1;
-                        is_settled = false;
-                        number.insert(own, (next % NUMBERS) as u16);
-                    }
-                    seen.push(number[&own]);
+        for four in page.quads() {
+            all.clear();
+            seen.clear();
+            four.into_iter().for_each(|texel| all.extend_from_slice(of_texel(texel)));
+            all.retain(|own| is_track(*own as usize));
+            all.sort_unstable();
+            all.dedup();
+            for own in all.iter().map(|&own| own as usize) {
+                while seen.contains(&number[own]) {
+                    next += 1;
+                    is_settled = false;
+                    number[own] = (next % NUMBERS) as u16;
                 }
+                seen.push(number[own]);
             }
         }
         if is_settled {
@@ -168,15 +203,17 @@ mod tests {
     use super::*;
 
     fn spans(part: u32, shades: &[[f64; 2]]) -> Vec<FoundSpan> {
-        shades.iter().map(|&shade| FoundSpan { part, shade }).collect()
+        shades.iter().map(|&shade| FoundSpan::new(part, shade)).collect()
+    }
+
+    fn tracks_of(found: &FoundSpans, size: PageSize, are_open: bool) -> PageTracks {
+        let source: Vec<u32> = (0..size.width * size.height).collect();
+        number_tracks(found, &Linked { size, source: &source, is_open: &|_, _| are_open })
     }
 
     fn page(texels: &[Vec<FoundSpan>]) -> FoundSpans {
-        let mut found = FoundSpans { first: vec![0], spans: Vec::new() };
-        for own in texels {
-            found.spans.extend_from_slice(own);
-            found.first.push(found.spans.len() as u32);
-        }
+        let mut found = FoundSpans::default();
+        texels.iter().for_each(|own| found.push(own.iter().copied()));
         found
     }
 
@@ -205,11 +242,11 @@ mod tests {
             [spans(1, &[[0.12, 0.22], [0.42, 0.5]]), spans(2, &[[0.3, 0.6]])].concat(),
         ];
         let size = PageSize { width: 2, height: 1 };
-        let tracks = number_tracks(&page(&texels), size, |_, _| true);
+        let tracks = tracks_of(&page(&texels), size, true);
         let numbers = |texel: usize| tracks.of_texel(texel).iter().map(|span| span.track).collect::<Vec<_>>();
         assert_eq!(numbers(0), numbers(1)[..2]);
         assert!(numbers(1).is_sorted_by(|a, b| a < b));
-        let apart = number_tracks(&page(&texels), size, |_, _| false);
+        let apart = tracks_of(&page(&texels), size, false);
         let of = |texel: usize| apart.of_texel(texel).iter().map(|span| span.track).collect::<Vec<_>>();
         assert!(of(0).iter().all(|number| !of(1).contains(number)));
     }
@@ -219,7 +256,7 @@ mod tests {
         // Four texels around a post: each step round leads from one span to the next.
         let two = || spans(1, &[[0.1, 0.2], [0.3, 0.4]]);
         let texels = [two(), spans(1, &[[0.28, 0.4]]), spans(1, &[[0.12, 0.22]]), spans(1, &[[0.2, 0.3]])];
-        let tracks = number_tracks(&page(&texels), PageSize { width: 2, height: 2 }, |_, _| true);
+        let tracks = tracks_of(&page(&texels), PageSize { width: 2, height: 2 }, true);
         for texel in 0..4 {
             assert!(tracks.of_texel(texel).is_sorted_by(|a, b| a.track < b.track), "{texel}: {tracks:?}");
         }
@@ -229,12 +266,33 @@ mod tests {
     fn more_tracks_than_numbers_differ_where_they_meet() {
         let size = PageSize { width: NUMBERS + 1, height: 2 };
         let texels = vec![spans(1, &[[0.1, 0.2]]); 2 * size.width as usize];
-        let tracks = number_tracks(&page(&texels), size, |_, _| false);
+        let tracks = tracks_of(&page(&texels), size, false);
         let number = |x: usize, y: usize| tracks.of_texel(y * size.width as usize + x)[0].track;
         for x in 0..size.width as usize - 1 {
             let mut four = [number(x, 0), number(x + 1, 0), number(x, 1), number(x + 1, 1)];
             four.sort_unstable();
             assert!(four.windows(2).all(|pair| pair[0] != pair[1]), "at {x}: {four:?}");
         }
+    }
+
+    #[test]
+    fn merged_shade_has_other_numbers_than_its_neighbours_and_gutters_share_tracks() {
+        let merged = spans(MERGED, &[[0.1, 0.2], [0.5, 0.6]]);
+        let size = PageSize { width: 3, height: 3 };
+        let tracks = tracks_of(&page(&vec![merged.clone(); 9]), size, true);
+        let numbers = |texel: usize| tracks.of_texel(texel).iter().map(|span| span.track).collect::<Vec<_>>();
+        for corner in [0, 1, 3, 4] {
+            let mut four: Vec<u16> = [0, 1, 3, 4].iter().flat_map(|way| numbers(corner + way)).collect();
+            four.sort_unstable();
+            assert!(four.windows(2).all(|pair| pair[0] != pair[1]), "{four:?}");
+        }
+        // The right texels of two rows copy those left of them: one has a track, the other merged shade.
+        let own = [spans(1, &[[0.1, 0.2]]), Vec::new(), merged.clone(), Vec::new()];
+        let found = page(&own);
+        let page = Linked { size: PageSize { width: 2, height: 2 }, source: &[0, 0, 2, 2], is_open: &|_, _| true };
+        let tracks = number_tracks(&found, &page);
+        assert_eq!(tracks.ranges[0], tracks.ranges[1]);
+        assert_ne!(tracks.of_texel(2)[0].track, tracks.of_texel(3)[0].track);
+        assert_eq!(tracks.of_texel(2)[0].start, tracks.of_texel(3)[0].start);
     }
 }

@@ -14,7 +14,9 @@
 //!
 //! **Practice.**
 //!
-//! * [`find`]: the spans of every texel. What matters is a minimal cover of its own shade and of its eight neighbours'.
+//! * [`page`]: which texels of a page have tracks. Where shade hardly moves from texel to texel, blending what texels
+//!   see is as good, so the others keep their merged shade.
+//! * [`find`]: the spans of a texel. What matters is a minimal cover of its own shade and of its eight neighbours'.
 //! * [`link`]: the numbers of tracks.
 //! * [`evaluate`]: visibility at a point between texels.
 //!
@@ -23,10 +25,89 @@
 mod evaluate;
 mod find;
 mod link;
+mod page;
 
-pub use evaluate::{TrackFootprint, tracked_visibility};
-pub use find::{FoundSpan, FoundSpans, find_spans};
-pub use link::number_tracks;
+pub use evaluate::tracked_visibility;
+pub use find::find_spans;
+pub use link::{Linked, number_tracks};
+pub use page::{PageShade, page_tracks};
+
+use crate::maps::Bits;
+
+/// The occluder that stands for the surface's own plane and the horizon.
+pub const OWN_PLANE: u32 = u32::MAX;
+/// The occluder that stands for all of them together, where a texel has no tracks.
+pub const MERGED: u32 = u32::MAX - 1;
+/// Most spans of a texel.
+pub const MOST_SPANS: usize = (1 << COUNT_BITS) - 1;
+/// Most spans of a page.
+pub const MOST_PAGE_SPANS: usize = 1 << (32 - COUNT_BITS);
+/// Bits of a number of spans, beside those of a place.
+const COUNT_BITS: u32 = 6;
+
+/// Spans in a row of the textures that hold them.
+pub const SPANS_WIDTH: u32 = 2048;
+/// Most rows of a slice of them.
+const MOST_ROWS: u64 = 8192;
+
+/// Width, rows and slices of the textures that hold this many spans of a page.
+pub fn span_texture(spans: u64) -> [u32; 3] {
+    let rows = spans.div_ceil(SPANS_WIDTH.into()).max(1);
+    let slices = rows.div_ceil(MOST_ROWS);
+    [SPANS_WIDTH, if slices > 1 { MOST_ROWS as u32 } else { rows as u32 }, slices as u32]
+}
+
+/// Texels of these textures.
+pub fn span_texels(spans: u64) -> u64 {
+    span_texture(spans).map(u64::from).iter().product()
+}
+
+/// A span of shade by one occluder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FoundSpan {
+    /// The occluder's part, [`OWN_PLANE`] or [`MERGED`].
+    pub part: u32,
+    /// When it starts: a code of 16 bits.
+    pub start: u16,
+    /// When it ends.
+    pub end: u16,
+}
+
+impl FoundSpan {
+    /// From its start and end in path time.
+    pub fn new(part: u32, shade: [f64; 2]) -> Self {
+        let [start, end] = shade.map(|t| Bits::Sixteen.encode(t));
+        Self { part, start, end }
+    }
+}
+
+/// Spans of texels, each texel's by ascending part and time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FoundSpans {
+    /// For each texel, where its spans begin; one more at the end.
+    pub first: Vec<u32>,
+    /// All spans.
+    pub spans: Vec<FoundSpan>,
+}
+
+impl Default for FoundSpans {
+    fn default() -> Self {
+        Self { first: vec![0], spans: Vec::new() }
+    }
+}
+
+impl FoundSpans {
+    /// Adds the next texel's.
+    pub fn push(&mut self, spans: impl IntoIterator<Item = FoundSpan>) {
+        self.spans.extend(spans);
+        self.first.push(self.spans.len() as u32);
+    }
+
+    /// Of a texel.
+    pub fn of_texel(&self, texel: usize) -> &[FoundSpan] {
+        &self.spans[self.first[texel] as usize..self.first[texel + 1] as usize]
+    }
+}
 
 /// The shade of one occluder at one texel, as it is stored. Times are codes of 16 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,10 +129,34 @@ pub struct PageTracks {
     pub spans: Vec<TrackSpan>,
 }
 
+/// What came of the texels of a page.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TrackCounts {
+    /// Texels that have tracks.
+    pub texels: u64,
+    /// Texels that have more spans than are stored, and so merged shade.
+    pub crowded_texels: u64,
+}
+
 impl PageTracks {
     /// The spans of a texel.
     pub fn of_texel(&self, texel: usize) -> &[TrackSpan] {
         let [first, count] = self.ranges[texel].map(|n| n as usize);
         &self.spans[first..first + count]
+    }
+
+    /// The first span of a texel and how many it has, from its number in [`Self::lists`].
+    pub fn range_of(list: u32) -> [u32; 2] {
+        [list >> COUNT_BITS, list & MOST_SPANS as u32]
+    }
+
+    /// For each texel 64 times the index of its first span, plus how many it has: what shaders read.
+    pub fn lists(&self) -> impl Iterator<Item = u32> + '_ {
+        self.ranges.iter().map(|[first, count]| (first << COUNT_BITS) + count)
+    }
+
+    /// Bytes that it takes on a GPU: 4 a texel, where its spans lie and how many they are, and 6 a span.
+    pub fn gpu_bytes(&self) -> u64 {
+        4 * self.ranges.len() as u64 + 6 * span_texels(self.spans.len() as u64)
     }
 }

@@ -305,6 +305,8 @@ pub enum FilterChoice {
     Nearest,
     /// As bilinear, and edges of shadows drawn sharply between texels.
     Sharp,
+    /// Shadows occluder by occluder, also those far narrower than texels; sets baked with --tracks.
+    Tracks,
 }
 
 impl From<FilterChoice> for Filter {
@@ -313,6 +315,7 @@ impl From<FilterChoice> for Filter {
             FilterChoice::Bilinear => Self::Bilinear,
             FilterChoice::Nearest => Self::Nearest,
             FilterChoice::Sharp => Self::Sharp,
+            FilterChoice::Tracks => Self::Tracks,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What draws: the technique that was asked for, on the hardware that is there.
 
-use super::args::{LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
+use super::args::{FilterChoice, LightChoice, LookArgs, OutputChoice, RendererChoice, TechniqueChoice};
 use super::no_effect;
 use clap::ValueEnum;
 use std::path::Path;
@@ -170,6 +170,9 @@ pub fn stage(
     let read = if output == OutputChoice::Visibility { Stage::read_without_looks } else { Stage::read };
     let stage = warned(read(from)?);
     no_effect::check_filter(look, output, stage.lamp.is_some())?;
+    if look.filter == FilterChoice::Tracks && stage.pages.iter().all(|page| page.tracks.is_none()) {
+        return Err(Failure::usage("this set has no shadow tracks: bake it with --tracks, or give another --filter"));
+    }
     let stage = match look.technique {
         TechniqueChoice::Baked => stage,
         // A lamp's shadows are those of the bake.

@@ -43,6 +43,7 @@ impl Display for TechniqueSpec {
                     Filter::Nearest => "nearest",
                     Filter::Bilinear => "filtered",
                     Filter::Sharp => "sharp",
+                    Filter::Tracks => "tracks",
                 };
                 write!(f, "baked:{}:lanes{lanes}:{filter}", bits.count())
             }

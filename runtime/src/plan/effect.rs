@@ -41,6 +41,8 @@ pub enum DrawEffect {
     SixteenBitTimes,
     /// A lamp and its stored times.
     Lamp,
+    /// Shadow tracks, instead of the sun's stored times.
+    Tracks,
     /// Ambient occlusion.
     AmbientOcclusion,
     /// Bent normals.

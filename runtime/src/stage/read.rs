@@ -95,7 +95,8 @@ impl Stage {
     pub fn plain(scene: Scene, path: Option<SunPath>) -> Self {
         let chart = Chart { page: 0, uv_set: 0, scale: Vec2::ZERO, offset: Vec2::ZERO };
         let charts = vec![Some(chart); scene.instances.len()];
-        let page = PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None, walls: None };
+        let page =
+            PageMaps { width: 1, height: 1, lanes: Vec::new(), lamp: None, ambient: None, walls: None, tracks: None };
         Self::with_charts(scene, charts, vec![page], Bits::Eight, path)
     }
 
@@ -134,7 +135,7 @@ fn with_open_page(scene: &Scene, charts: &mut [Option<Chart>], mut pages: Vec<Pa
         let lanes = pages.iter().map(|page| &page.lanes).find(|lanes| !lanes.is_empty());
         let lanes = lanes.into_iter().flatten().map(|lane| LaneMaps { lane: lane.lane, layers: lit() }).collect();
         let lamp = pages.iter().any(|page| page.lamp.is_some()).then(lit);
-        pages.push(PageMaps { width: 1, height: 1, lanes, lamp, ambient: None, walls: None });
+        pages.push(PageMaps { width: 1, height: 1, lanes, lamp, ambient: None, walls: None, tracks: None });
     }
     pages
 }

@@ -58,7 +58,10 @@ impl Stage {
 
     /// The same stage without the sun's times, so that none is bound or uploaded.
     pub fn without_sun(mut self) -> Self {
-        self.pages.iter_mut().for_each(|page| page.lanes.clear());
+        for page in &mut self.pages {
+            page.lanes.clear();
+            page.tracks = None;
+        }
         self
     }
 

@@ -71,7 +71,8 @@ pub fn bake_lanes(scene: Scene, path: Option<SunPath>, cell: u32, bits: Bits, la
     };
     let baked = |path: &SunPath| lanes(path).into_iter().map(|lane| bake_lane(path, lane)).collect();
     let lanes = path.as_ref().map(baked).unwrap_or_default();
-    let pages = vec![PageMaps { width: edge, height: edge, lanes, lamp: None, ambient: None, walls: None }];
+    let pages =
+        vec![PageMaps { width: edge, height: edge, lanes, lamp: None, ambient: None, walls: None, tracks: None }];
     Stage::new(scene, &entries, pages, bits, path).expect("a set made by code agrees with itself")
 }
 

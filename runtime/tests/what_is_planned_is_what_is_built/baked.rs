@@ -15,7 +15,7 @@ use sunbake_runtime::{DrawPlan, Filter, Stage};
 
 /// What a picture of a baked stage builds, after checking that the plan said so before anything was built.
 fn baked(gpu: &Gpu, stage: &Stage, output: Output) -> (Census, DrawPlan) {
-    let plan = baked_plan(stage, output);
+    let plan = baked_plan(stage, Filter::Bilinear, output);
     let shot = shot(stage, ASIDE);
     let mut technique = BakedGpu::new(gpu, stage, Filter::Bilinear).unwrap();
     draw(&mut technique, &shot, output);

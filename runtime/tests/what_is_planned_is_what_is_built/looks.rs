@@ -25,7 +25,7 @@ fn with_sheet(material: Material, look: Look) -> Stage {
 
 /// What a picture of a kind builds, after checking that the plan said so before anything was built.
 fn built(gpu: &Gpu, stage: &Stage, output: Output) -> (Census, DrawPlan) {
-    let plan = baked_plan(stage, output);
+    let plan = baked_plan(stage, Filter::Bilinear, output);
     let shot = shot(stage, ASIDE);
     let mut technique = BakedGpu::new(gpu, stage, Filter::Bilinear).unwrap();
     draw(&mut technique, &shot, output);

@@ -14,7 +14,7 @@ use crate::plan::{Census, DrawPlan};
 use crate::stage::Stage;
 use crate::{Filter, View};
 use glam::Vec3;
-use plan::{BakedProgram, plan, programs};
+use plan::{BakedProgram, plan, programs, request};
 
 /// Draws a baked stage.
 pub struct BakedRenderer<'g> {
@@ -30,7 +30,7 @@ pub struct BakedRenderer<'g> {
 impl<'g> BakedRenderer<'g> {
     /// Uploads a stage.
     pub fn new(gpu: &'g Gpu, stage: &Stage, filter: Filter) -> Result<Self, GpuError> {
-        let scene = gpu.checked("uploading the set", || SceneOnGpu::new(gpu, stage))??;
+        let scene = gpu.checked("uploading the set", || SceneOnGpu::with(gpu, stage, request(filter)))??;
         Ok(Self {
             gpu,
             filter,

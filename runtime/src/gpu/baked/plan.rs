@@ -1,5 +1,6 @@
 //! What pictures of a baked stage call for.
 
+use crate::Filter;
 use crate::gpu::frame::{BatchKey, BatchRequest, Output, ProgramKey, depth_key, with_pipelines};
 use crate::gpu::plan::{SceneEffects, SceneNeeds, of_passes};
 use crate::plan::{Census, DrawPlan};
@@ -31,8 +32,13 @@ impl ProgramKey for BakedProgram {
 }
 
 /// What pictures of a kind call for of a baked stage of which nothing has been built.
-pub fn baked_plan(stage: &Stage, output: Output) -> DrawPlan {
-    plan(&SceneNeeds::new(stage, BatchRequest::default()), output)
+pub fn baked_plan(stage: &Stage, filter: Filter, output: Output) -> DrawPlan {
+    plan(&SceneNeeds::new(stage, request(filter)), output)
+}
+
+/// What a filter wants of a scene.
+pub fn request(filter: Filter) -> BatchRequest<'static> {
+    BatchRequest { wants_tracks: filter == Filter::Tracks, ..BatchRequest::default() }
 }
 
 /// What pictures of a kind call for of a scene.

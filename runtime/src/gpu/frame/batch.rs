@@ -110,6 +110,8 @@ pub struct BatchRequest<'a> {
     pub ground: Option<&'a Ground>,
     /// Whether facets of something smooth say how far that is above them.
     pub wants_lift: bool,
+    /// Whether shadow tracks are read, where pages have them, instead of the sun's times.
+    pub wants_tracks: bool,
 }
 
 /// A texture with its sampler.
@@ -211,7 +213,7 @@ pub fn batches(stage: &Stage, request: BatchRequest) -> (Vec<Batch>, Vertices) {
 
 /// The triangles of each batch.
 pub fn by_key(stage: &Stage, request: BatchRequest) -> BTreeMap<BatchKey, Vec<usize>> {
-    let BatchRequest { ground, wants_lift } = request;
+    let BatchRequest { ground, wants_lift, .. } = request;
     let mut triangles: BTreeMap<BatchKey, Vec<usize>> = BTreeMap::new();
     for instance in 0..stage.scene.instances.len() {
         let key = key(stage, instance);

@@ -4,6 +4,7 @@
 use crate::gpu::device::{Gpu, GpuError};
 use std::borrow::Cow;
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits, LayerMaps, PageMaps};
+use sunbake::tracks::{PageTracks, TrackSpan, span_texture};
 use sunbake_shaders::{AmbientModel, PageVariant};
 
 /// A page's textures, bound. No layout and no group where the page has neither times nor ambient light.
@@ -28,7 +29,7 @@ impl PageTextures {
         let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
         GpuError::check_limit("the longer edge of a page", u64::from(maps.width.max(maps.height)), limit)?;
         let mut textures: Vec<(u32, wgpu::Texture)> = Vec::new();
-        if variant.layer_count() > 0 {
+        if variant.sun_layer_count() > 0 {
             let layers: Vec<&LayerMaps> = maps.lanes.iter().flat_map(|lane| &lane.layers).collect();
             let [rise, fall] = times(gpu, maps, bits, &layers)?;
             textures.extend([(0, rise), (1, fall)]);
@@ -40,12 +41,15 @@ impl PageTextures {
             let [rise, fall] = times(gpu, maps, bits, &lamp.iter().collect::<Vec<_>>())?;
             textures.extend([(3, rise), (4, fall)]);
         }
+        if let Some(tracks) = maps.tracks.as_ref().filter(|_| variant.reads_tracks()) {
+            textures.extend(track_textures(gpu, maps, tracks)?);
+        }
         let ambient_and_times = textures.len();
         if let Some(walls) = maps.walls.as_ref().filter(|_| variant.has_walls && variant.reads_texels()) {
             let slice = walls.as_flattened().to_vec();
             textures.push((7, slices_texture(gpu, maps, "walls", wgpu::TextureFormat::Rg8Uint, &[slice])));
         }
-        let time_textures = textures.iter().filter(|(binding, _)| [0, 1, 3, 4].contains(binding)).count();
+        let time_textures = textures.iter().filter(|(binding, _)| [0, 1, 3, 4, 8, 9, 10].contains(binding)).count();
         let (layout, bind_group) = bound(gpu, &textures).unzip();
         Ok(Self {
             layout,
@@ -123,6 +127,31 @@ fn times(gpu: &Gpu, maps: &PageMaps, bits: Bits, layers: &[&LayerMaps]) -> Resul
         }
         texture
     }))
+}
+
+/// The lists of texels, and the spans row after row and slice after slice: numbers of tracks, and starts and ends.
+fn track_textures(gpu: &Gpu, maps: &PageMaps, tracks: &PageTracks) -> Result<[(u32, wgpu::Texture); 3], GpuError> {
+    let limits = gpu.device.limits();
+    let [width, rows, slices] = span_texture(tracks.spans.len() as u64);
+    GpuError::check_limit("the rows of a page's spans", u64::from(rows), limits.max_texture_dimension_2d.into())?;
+    GpuError::check_limit("the slices of a page's spans", u64::from(slices), limits.max_texture_array_layers.into())?;
+    let lists: Vec<u8> = tracks.lists().flat_map(u32::to_ne_bytes).collect();
+    let lists = slices_texture(gpu, maps, "track lists", wgpu::TextureFormat::R32Uint, &[lists]);
+    let spans = |label, format: wgpu::TextureFormat, codes_of: fn(&TrackSpan) -> [u16; 2]| {
+        let texture = texture(gpu, label, [width, rows], slices, format, FILLED_AND_READ);
+        let texel_bytes = format.block_copy_size(None).unwrap_or(0);
+        let used = texel_bytes as usize / size_of::<u16>();
+        let in_slice = width as usize * rows as usize;
+        for (slice, spans) in tracks.spans.chunks(in_slice).enumerate() {
+            let mut codes: Vec<u16> = spans.iter().flat_map(|span| codes_of(span).into_iter().take(used)).collect();
+            codes.resize(in_slice * used, 0);
+            upload(gpu, &texture, 0, slice as u32, [width, rows], texel_bytes, bytemuck::cast_slice(&codes));
+        }
+        texture
+    };
+    let numbers = spans("tracks", wgpu::TextureFormat::R16Uint, |span| [span.track, 0]);
+    let shades = spans("shades", wgpu::TextureFormat::Rg16Uint, |span| [span.start, span.end]);
+    Ok([(8, lists), (9, numbers), (10, shades)])
 }
 
 /// The textures that a model of ambient light reads, with their bindings.

@@ -44,7 +44,7 @@ impl SceneOnGpu {
     /// Uploads a stage with what a technique wants of its batches.
     pub fn with(gpu: &Gpu, stage: &Stage, request: BatchRequest) -> Result<Self, GpuError> {
         let (batches, vertices) = batches(stage, request);
-        let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key));
+        let needs = SceneNeeds::of(stage, batches.iter().map(|batch| batch.key), request);
         let page = |(maps, page): (_, &PageNeeds)| PageTextures::new(gpu, maps, stage.bits, &page.variant);
         let pages = stage.pages.iter().zip(&needs.pages).map(page).collect::<Result<_, _>>()?;
         let (hidden, batches): (Vec<_>, Vec<_>) = batches.into_iter().partition(|batch| batch.key.is_hidden);

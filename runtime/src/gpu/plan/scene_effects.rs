@@ -170,7 +170,14 @@ impl SceneEffects<'_> {
                 if has_times { Reason::Count(self.scene.bits as usize) } else { Reason::Unread },
             ),
             self.lamp(lamp_layers),
+            self.tracks(),
         ]
+    }
+
+    fn tracks(&self) -> DrawNeed {
+        let is_read = self.scene.pages.iter().any(|page| page.variant.reads_tracks());
+        let saved = is_read.then(|| self.saved_on_pages(|page| page.has_tracks = false));
+        DrawNeed::new(DrawEffect::Tracks, saved, Reason::Usual)
     }
 
     fn lamp(&self, layers: u32) -> DrawNeed {

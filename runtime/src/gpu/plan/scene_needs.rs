@@ -6,7 +6,8 @@ use crate::plan::Census;
 use crate::playback::page_variant;
 use crate::stage::Stage;
 use std::collections::BTreeSet;
-use sunbake::maps::{AmbientTextures, GpuTexel};
+use sunbake::maps::{AmbientTextures, GpuTexel, PageMaps};
+use sunbake::tracks::span_texels;
 use sunbake_shaders::{AmbientModel, PageVariant, Stream};
 
 /// What surfaces, their maps and their textures call for.
@@ -31,20 +32,27 @@ pub struct PageNeeds {
     pub variant: PageVariant,
     /// Texels of the page.
     pub texels: u64,
+    /// Spans of its shadow tracks, whether or not they are read.
+    pub spans: u64,
 }
 
 impl SceneNeeds {
     /// What a stage calls for, with what a technique wants of its batches.
     pub fn new(stage: &Stage, request: BatchRequest) -> Self {
-        Self::of(stage, by_key(stage, request).into_keys())
+        Self::of(stage, by_key(stage, request).into_keys(), request)
     }
 
     /// What a stage calls for whose surfaces are drawn in these batches.
-    pub fn of(stage: &Stage, keys: impl Iterator<Item = BatchKey>) -> Self {
+    pub fn of(stage: &Stage, keys: impl Iterator<Item = BatchKey>, request: BatchRequest) -> Self {
         let radius_rad = stage.path.as_ref().map_or(0.0, |path| path.angular_radius_rad);
-        let page = |maps| PageNeeds {
-            variant: page_variant(maps, stage.bits, radius_rad),
-            texels: u64::from(maps.width) * u64::from(maps.height),
+        let page = |maps: &PageMaps| {
+            let mut variant = page_variant(maps, stage.bits, radius_rad);
+            variant.has_tracks = request.wants_tracks && maps.tracks.is_some() && !variant.is_point_sun;
+            PageNeeds {
+                variant,
+                texels: u64::from(maps.width) * u64::from(maps.height),
+                spans: maps.tracks.as_ref().map_or(0, |tracks| tracks.spans.len() as u64),
+            }
         };
         let (hidden, batches) = keys.partition(|key| key.is_hidden);
         Self {
@@ -141,7 +149,13 @@ impl SceneNeeds {
 
 impl PageNeeds {
     fn time_textures(&self) -> usize {
-        2 * (usize::from(self.variant.layer_count() > 0) + usize::from(self.variant.lamp_layer_count > 0))
+        2 * (usize::from(self.variant.sun_layer_count() > 0) + usize::from(self.variant.lamp_layer_count > 0))
+            + self.track_textures()
+    }
+
+    /// Lists of texels, numbers of tracks, and times.
+    fn track_textures(&self) -> usize {
+        if self.variant.reads_tracks() { 3 } else { 0 }
     }
 
     fn ambient_textures(&self) -> usize {
@@ -164,7 +178,7 @@ impl PageNeeds {
     fn bytes(&self, bits: u32) -> u64 {
         let variant = &self.variant;
         let texel = GpuTexel {
-            layers: variant.layer_count() + variant.lamp_layer_count,
+            layers: variant.sun_layer_count() + variant.lamp_layer_count,
             bits,
             ambient: match variant.ambient {
                 AmbientModel::Hemisphere => AmbientTextures::None,
@@ -175,6 +189,7 @@ impl PageNeeds {
             sides: if variant.has_backs { 2 } else { 1 },
             walls: self.wall_textures() > 0,
         };
-        self.texels * texel.bytes()
+        let tracks = if variant.reads_tracks() { 4 * self.texels + 6 * span_texels(self.spans) } else { 0 };
+        self.texels * texel.bytes() + tracks
     }
 }

@@ -254,7 +254,7 @@ fn compares(settings: &MapSettings) -> bool {
 /// What shadow maps want of batches. Casters that are projected flat are compared with nothing.
 fn request<'a>(settings: &MapSettings, scene: &'a ShadowScene) -> BatchRequest<'a> {
     let wants_lift = settings.variant != Variant::Planar && settings.optimizations.sampling;
-    BatchRequest { ground: Some(&scene.ground), wants_lift }
+    BatchRequest { ground: Some(&scene.ground), wants_lift, wants_tracks: false }
 }
 
 /// An upper bound of what pictures of a kind and of a number of pixels call for, whatever the view and the moment, of a

@@ -51,7 +51,7 @@ const NONE: EffectText = EffectText {
 };
 
 /// One entry per effect.
-pub const TEXTS: [EffectText; 45] = [
+pub const TEXTS: [EffectText; 46] = [
     EffectText {
         effect: DrawEffect::DepthPass,
         name: "depth-pass",
@@ -216,6 +216,16 @@ pub const TEXTS: [EffectText; 45] = [
         off_by: "--light sun",
         on_by: "a set baked with --lamp FILE",
         ..NONE
+    },
+    EffectText {
+        effect: DrawEffect::Tracks,
+        name: "shadow-tracks",
+        why_on: "the sun's shade is read occluder by occluder, which draws shadows narrower than texels",
+        why_off: "the sun's times are read, or none",
+        would_take: "three textures and bindings a page instead of two: 4 bytes a texel and 6 a span",
+        also_takes: "a list of spans for each of four texels a pixel",
+        off_by: "another --filter",
+        on_by: "--filter tracks, of a set baked with --tracks",
     },
     EffectText {
         effect: DrawEffect::AmbientOcclusion,

@@ -1,0 +1,70 @@
+//! The shadow tracks of a page, after its lit intervals.
+
+use super::pages::PageTexels;
+use crate::atlas::{PageSize, surface_point};
+use crate::scene::{Geometry, Scene};
+use crate::tracks::{FoundSpan, FoundSpans, MERGED, MOST_PAGE_SPANS, PageShade, PageTracks, TrackCounts, page_tracks};
+use crate::visibility::{Intervals, OccluderFinder};
+
+/// How tracks are found.
+#[derive(Clone, Copy)]
+pub(super) struct TrackJob<'a> {
+    /// Finds what hides the sun's centre.
+    pub finder: &'a OccluderFinder<'a>,
+    /// Width of the sun in path time.
+    pub width_t: f64,
+}
+
+/// Takes the intervals of a page's texels in their order, and then finds its tracks.
+pub(super) struct TrackBaker<'a> {
+    job: TrackJob<'a>,
+    size: PageSize,
+    texels: PageTexels<'a>,
+    lit: FoundSpans,
+    is_filled: Vec<bool>,
+}
+
+/// The place of a texel that nothing covers.
+const ABSENT: u32 = u32::MAX;
+
+impl<'a> TrackBaker<'a> {
+    pub fn new(job: TrackJob<'a>, size: PageSize, texels: PageTexels<'a>) -> Self {
+        Self { job, size, texels, lit: FoundSpans::default(), is_filled: Vec::new() }
+    }
+
+    /// Adds the next texel's intervals. `is_filled`: they are what its neighbours agree on.
+    pub fn add(&mut self, lit: &Intervals, is_filled: bool) {
+        self.lit.push(lit.as_slice().iter().map(|&lit| FoundSpan::new(MERGED, lit)));
+        self.is_filled.push(is_filled);
+    }
+
+    /// None where there are too many.
+    pub fn find(self, scene: &Scene, geometry: &Geometry) -> Option<(PageTracks, TrackCounts)> {
+        let Self { job, size, texels, .. } = &self;
+        let samples = &texels.samples.samples;
+        let count = size.width * size.height;
+        let mut place = vec![ABSENT; count as usize];
+        texels.order.iter().zip(0..).for_each(|(&i, index)| place[samples[i as usize].texel as usize] = index);
+        let mut source: Vec<u32> = (0..count).collect();
+        texels.gutter.iter().for_each(|copy| source[copy.texel as usize] = samples[copy.sample as usize].texel);
+        let mut lit = FoundSpans::default();
+        for &place in &place {
+            match place {
+                ABSENT => lit.push([FoundSpan::new(MERGED, [0.0, 1.0])]),
+                place => lit.push(self.lit.of_texel(place as usize).iter().copied()),
+            }
+        }
+        let has_point = |texel: u32| {
+            let place = place[texel as usize];
+            place != ABSENT && !self.is_filled[place as usize]
+        };
+        let point = |texel: u32| {
+            let sample = texels.order[place[texel as usize] as usize];
+            surface_point(scene, geometry, &samples[sample as usize])
+        };
+        let (width_t, walls) = (job.width_t, texels.walls);
+        let shade =
+            PageShade { size: *size, source: &source, lit: &lit, has_point: &has_point, point: &point, walls, width_t };
+        Some(page_tracks(job.finder, &shade)).filter(|(tracks, _)| tracks.spans.len() < MOST_PAGE_SPANS)
+    }
+}

@@ -1,0 +1,111 @@
+// Shadow tracks: the times of one occluder are blended over the four texels, then what all of them hide is added up.
+// Twin of bake/src/tracks/evaluate.rs, where it is explained.
+
+// For each texel 64 times the index of its first span, plus how many it has.
+@group(1) @binding(8) var list_map: texture_2d_array<u32>;
+// Spans, row after row and slice after slice: the number of the track, and codes of its start and end.
+@group(1) @binding(9) var track_map: texture_2d_array<u32>;
+@group(1) @binding(10) var shade_map: texture_2d_array<u32>;
+
+const SPAN_CODES: f32 = 65535.0;
+// More than any track's number.
+const NO_TRACK: u32 = 65536u;
+
+// The sun's width in eight parts, and how much of each is hidden.
+struct Parts {
+    start: vec4<f32>,
+    width: f32,
+    first: vec4<f32>,
+    last: vec4<f32>,
+}
+
+struct Place {
+    texel: vec2<u32>,
+    slice: u32,
+}
+
+fn span_place(index: u32) -> Place {
+    let size = textureDimensions(track_map);
+    let row = index / size.x;
+    return Place(vec2<u32>(index % size.x, row % size.y), row / size.y);
+}
+
+// The track of the next of a texel's spans, which are those from `list.x` up to `list.y`.
+fn next_track(list: vec2<u32>) -> u32 {
+    if list.x >= list.y {
+        return NO_TRACK;
+    }
+    let place = span_place(list.x);
+    return textureLoad(track_map, place.texel, place.slice, 0).x;
+}
+
+fn shade_of(span: u32) -> vec2<f32> {
+    let place = span_place(span);
+    return vec2<f32>(textureLoad(shade_map, place.texel, place.slice, 0).xy);
+}
+
+// Hides what lies between two codes.
+fn hide(parts: ptr<function, Parts>, shade: vec2<f32>, weight: f32) {
+    let width = (*parts).width;
+    let start = (*parts).start;
+    let later = start + 4.0 * width;
+    let zero = vec4<f32>(0.0);
+    (*parts).first += weight * max(min(vec4<f32>(shade.y), start + width) - max(vec4<f32>(shade.x), start), zero);
+    (*parts).last += weight * max(min(vec4<f32>(shade.y), later + width) - max(vec4<f32>(shade.x), later), zero);
+}
+
+fn list_of(texel: vec2<i32>) -> vec2<u32> {
+    let list = textureLoad(list_map, texel, 0, 0).x;
+    return vec2<u32>(list >> 6u, (list >> 6u) + (list & 63u));
+}
+
+fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
+    let width_codes = max(frame.width_t * SPAN_CODES, 1.0);
+    let window_start = frame.t * SPAN_CODES - 0.5 * width_codes;
+    let part = width_codes / 8.0;
+    var parts = Parts(window_start + part * vec4<f32>(0.0, 1.0, 2.0, 3.0), part, vec4<f32>(0.0), vec4<f32>(0.0));
+    let sum = dot(weights, vec4<f32>(1.0));
+    // There is no sun before and after the path.
+    hide(&parts, vec2<f32>(window_start, 0.0), sum);
+    hide(&parts, vec2<f32>(SPAN_CODES, window_start + width_codes), sum);
+    var lists = array<vec2<u32>, 4>();
+    var tracks = array<u32, 4>();
+    for (var k = 0; k < 4; k++) {
+        // What does not count is not read.
+        if weights[k] > 0.0 {
+            lists[k] = list_of(texel_of(at, k));
+        }
+        tracks[k] = next_track(lists[k]);
+    }
+    loop {
+        let track = min(min(tracks[0], tracks[1]), min(tracks[2], tracks[3]));
+        if track == NO_TRACK {
+            break;
+        }
+        var weight = 0.0;
+        var shade = vec2<f32>(0.0);
+        for (var k = 0; k < 4; k++) {
+            if tracks[k] == track {
+                weight += weights[k];
+                shade += weights[k] * shade_of(lists[k].x);
+                lists[k].x++;
+                tracks[k] = next_track(lists[k]);
+            }
+        }
+        hide(&parts, shade / weight, weight);
+    }
+    let open = max(vec4<f32>(sum * part) - parts.first, vec4<f32>(0.0))
+        + max(vec4<f32>(sum * part) - parts.last, vec4<f32>(0.0));
+    return dot(open, vec4<f32>(1.0)) / width_codes;
+}
+
+fn page_visibility(page_uv: vec2<f32>) -> f32 {
+    let at = footprint(page_uv, textureDimensions(list_map));
+    let share = reach(at);
+    if !share.takes_darkest {
+        return tracked(at, share.weights);
+    }
+    let above = min(tracked(at, vec4<f32>(1.0, 0.0, 0.0, 0.0)), tracked(at, vec4<f32>(0.0, 1.0, 0.0, 0.0)));
+    let below = min(tracked(at, vec4<f32>(0.0, 0.0, 1.0, 0.0)), tracked(at, vec4<f32>(0.0, 0.0, 0.0, 1.0)));
+    return min(above, below);
+}
