@@ -3,12 +3,15 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use sunbake::atlas::{Footprint, PageSize, SurfacePoint};
 use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
+use sunbake::progress::Silent;
 use sunbake::scene::{Components, Geometry, Scene};
+use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake::trace::{Direction, Tracer};
 use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
+use sunbake::{Bake, bake_scene};
 
 /// Texels a metre, and their number along an edge of the patch behind the fence.
 const DENSITY: f64 = 10.0;
@@ -49,9 +52,12 @@ fn fence() -> Traced {
     Traced::new(ground().soup(&soup).build())
 }
 
+fn request() -> DayRequest {
+    DayRequest::new(Some([40.0, 0.0]), Some("2026-12-21".parse().expect("a date"))).expect("a place")
+}
+
 fn path() -> SunPath {
-    let request = DayRequest::new(Some([40.0, 0.0]), Some("2026-06-21".parse().expect("a date"))).expect("a place");
-    match day(&request).expect("a day") {
+    match day(&request()).expect("a day") {
         DayOutcome::Path(path) => path,
         DayOutcome::NoSun { .. } => unreachable!("the sun rises"),
     }
@@ -225,4 +231,23 @@ fn nothing_pops_in_time_or_between_quads() {
             assert!((left - right).abs() < 1e-3, "{on} at {t}: {left} and {right}");
         }
     }
+}
+
+#[test]
+fn a_bake_finds_the_same_tracks_with_one_thread_and_with_two() {
+    let draft = BakeSettings::draft(SunRequest::Day(request()));
+    let settings = BakeSettings { page_size_texels: 256, ambient: None, finds_tracks: true, ..draft };
+    let baked = |threads| {
+        let settings = BakeSettings { threads, ..settings.clone() };
+        bake_scene(&fence().scene, &settings, &Silent).expect("a bake")
+    };
+    let [one, two] = [1, 2].map(baked);
+    let tracks = |bake: &Bake| bake.pages.iter().map(|page| page.maps.tracks.clone()).collect::<Vec<_>>();
+    assert_eq!(tracks(&one), tracks(&two));
+    let found = one.manifest.stats.tracks.expect("tracks were asked for");
+    assert!(found.texels > 1000 && found.crowded_texels == 0, "{found:?}");
+    let without = bake_scene(&fence().scene, &BakeSettings { finds_tracks: false, ..settings.clone() }, &Silent);
+    let without = without.expect("a bake");
+    assert!(tracks(&without).iter().all(Option::is_none) && without.manifest.stats.tracks.is_none());
+    assert_eq!(without.pages[0].maps.lanes, one.pages[0].maps.lanes, "the times are the same");
 }

@@ -36,6 +36,7 @@ fn stage_of(scene: &Scene, texels_per_metre: f64, has_walls: bool) -> Stage {
         density: Density::TexelsPerMetre(texels_per_metre),
         page_size_texels: 1024,
         ambient: Some(AmbientRequest::with_rays(64)),
+        finds_tracks: true,
         threads: 1,
         ..BakeSettings::standard(SunRequest::Day(june_day()))
     };
@@ -76,7 +77,7 @@ fn most_light(stage: &Stage, numbers: &mut Numbers, is_inside: impl Fn(&SurfaceP
             let page_uv = a * (1.0 - u - v) as f32 + b * u as f32 + c * v as f32;
             let page = &pages[chart.page as usize];
             for moment in &moments {
-                for filter in [Filter::Bilinear, Filter::Sharp] {
+                for filter in [Filter::Bilinear, Filter::Sharp, Filter::Tracks] {
                     most[0] = most[0].max(page.sun_visibility(page_uv, normal, filter, moment));
                 }
                 let sky = AmbientSky::new(moment, &pages);

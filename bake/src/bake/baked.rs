@@ -161,6 +161,7 @@ mod tests {
             page_size_texels: 64,
             bits,
             lane_count: 3,
+            finds_tracks: true,
             ambient: Some(ambient),
             loss_map: cfg!(feature = "exr"),
             threads: 1,

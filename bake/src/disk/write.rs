@@ -119,6 +119,7 @@ mod tests {
     use super::super::{manifest, read};
     use super::*;
     use crate::maps::{Lane, LaneMaps, LayerMaps, PageMaps};
+    use crate::tracks::{PageTracks, TrackSpan};
 
     fn maps(bits: Bits) -> PageMaps {
         let mut layer = LayerMaps::unlit(6, bits);
@@ -127,7 +128,20 @@ mod tests {
         let mut of_lamp = layer.clone();
         of_lamp.rise[2] = [7; 4];
         let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: vec![layer.clone(), layer] }];
-        PageMaps { width: 3, height: 2, lanes, lamp: Some(vec![of_lamp]), ambient: None, walls: None, tracks: None }
+        let span = |track, start, end| TrackSpan { track, start, end };
+        let tracks = PageTracks {
+            ranges: vec![[0, 2], [0, 2], [2, 0], [2, 3], [5, 1], [1, 1]],
+            spans: vec![
+                span(3, 0, 65_535),
+                span(65_284, 7, 9),
+                span(0, 1, 2),
+                span(1, 5, 5),
+                span(9, 0, 1),
+                span(4, 8, 9),
+            ],
+        };
+        let (lamp, tracks) = (Some(vec![of_lamp]), Some(tracks));
+        PageMaps { width: 3, height: 2, lanes, lamp, ambient: None, walls: None, tracks }
     }
 
     fn manifest(atlas: AtlasEntry, bits: Bits) -> Manifest {
@@ -260,6 +274,24 @@ mod tests {
         refused(|json| json["lamp"]["keys"][1]["t"] = 0.5.into(), "ascend from 0 to 1");
         refused(|json| json["lamp"]["keys"][1]["position"] = json["lamp"]["keys"][0]["position"].clone(), "same place");
         refused(|json| json["atlases"][0]["lamp"]["layers"][0]["rise"] = "../x.png".into(), "not a plain file name");
+    }
+
+    #[test]
+    fn tracks_that_are_none_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("set");
+        write(&target, false, Bits::Sixteen).unwrap();
+        let png = target.join("page0_track_lists.png");
+        let said = || read::read(&target).unwrap_err().to_string();
+        // A list of one span beyond the last, and one of two that do not ascend.
+        for list in [6 << 6 | 1, 1 << 6 | 2u32] {
+            image::RgbaImage::from_pixel(3, 2, image::Rgba(list.to_le_bytes())).save(&png).unwrap();
+            assert!(said().contains("the list of texel 0, 0"), "{}", said());
+        }
+        image::RgbImage::new(3, 2).save(&png).unwrap();
+        assert!(said().contains("not RGBA of 8 bits"), "{}", said());
+        refused(|json| json["atlases"][0]["tracks"]["count"] = 1_000_000.into(), "the manifest says 2048 x 489");
+        refused(|json| json["atlases"][0]["tracks"]["spans"] = "../x.png".into(), "not a plain file name");
     }
 
     #[test]

@@ -154,6 +154,7 @@ fn invalid_options_are_refused() {
         (&["--size", "16384"], 3, &["16384 x 16384", "smaller --size", "larger --max-memory"]),
         (&["--texels-per-metre", "1e6"], 3, &["for meshes[0]", "smaller --texels-per-metre", "larger --max-memory"]),
         (&["--density", "node:0=1e6"], 3, &["for meshes[0]", "smaller --density", "larger --max-memory"]),
+        (&["--tracks", "--only", "ao"], 1, &["--tracks is about times", "add intervals to --only"]),
         (&["--leave-out", "ghost"], 1, &["\"ghost\" to leave out", "another --leave-out"]),
         (&["--no-cast", "ghost"], 1, &["\"ghost\" to free of its shadow", "another --no-cast"]),
         (&["--no-receive", "node:9"], 1, &["node:9", "it has 1 node, node:0", "another --no-receive"]),

@@ -6,6 +6,7 @@ use sunbake::disk::manifest::InstanceEntry;
 use sunbake::maps::{AmbientMaps, AmbientSide, Bits, LayerMaps};
 use sunbake::scene::{Alpha, Material, Mesh, TextureRef, Wrap};
 use sunbake::testing::{SceneBuilder, opaque};
+use sunbake::tracks::PageTracks;
 use sunbake_runtime::gpu::{Gpu, Output, baked_plan};
 use sunbake_runtime::plan::Census;
 use sunbake_runtime::technique::{BakedGpu, Technique};
@@ -15,9 +16,13 @@ use sunbake_runtime::{DrawPlan, Filter, Stage};
 
 /// What a picture of a baked stage builds, after checking that the plan said so before anything was built.
 fn baked(gpu: &Gpu, stage: &Stage, output: Output) -> (Census, DrawPlan) {
-    let plan = baked_plan(stage, Filter::Bilinear, output);
+    filtered(gpu, stage, Filter::Bilinear, output)
+}
+
+fn filtered(gpu: &Gpu, stage: &Stage, filter: Filter, output: Output) -> (Census, DrawPlan) {
+    let plan = baked_plan(stage, filter, output);
     let shot = shot(stage, ASIDE);
-    let mut technique = BakedGpu::new(gpu, stage, Filter::Bilinear).unwrap();
+    let mut technique = BakedGpu::new(gpu, stage, filter).unwrap();
     draw(&mut technique, &shot, output);
     let found = technique.census().unwrap();
     assert_eq!(plan.totals, found, "{output:?}");
@@ -67,6 +72,26 @@ fn a_box_under_a_point_sun_builds_the_least() {
     let (wide, wide_plan) = lit(&gpu, &plain_box(0.0047));
     assert_eq!((wide, turned_on(&wide_plan, &plan)), (least, vec!["penumbra"]));
     assert_eq!(wide_plan.need("penumbra").unwrap().takes, Census::default());
+}
+
+#[test]
+fn shadow_tracks_take_the_place_of_times_where_they_are_asked_for() {
+    let gpu = gpu();
+    let mut stage = plain_box(0.0047);
+    let (times, plan_of_times) = lit(&gpu, &stage);
+    let of_tracks = |stage: &Stage| filtered(&gpu, stage, Filter::Tracks, Output::Lit);
+    assert_eq!(of_tracks(&stage).0, times, "there are none");
+    stage.pages[0].tracks = Some(PageTracks { ranges: vec![[0, 0]; texels(&stage)], spans: Vec::new() });
+    assert_eq!(lit(&gpu, &stage).0, times, "nobody asks for them");
+    let (found, plan) = of_tracks(&stage);
+    let map_bytes = 4 * texels(&stage) as u64 + 6 * 2048;
+    assert_eq!(found, Census { time_textures: 3, bindings: times.bindings + 1, map_bytes, ..times });
+    assert_eq!(turned_on(&plan, &plan_of_times), ["shadow-tracks"]);
+    // A sun without width is seen or not, which is read from the times.
+    let mut point = plain_box(0.0);
+    let (times, _) = lit(&gpu, &point);
+    point.pages[0].tracks = stage.pages[0].tracks.clone();
+    assert_eq!(of_tracks(&point).0, times);
 }
 
 #[test]
