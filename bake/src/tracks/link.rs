@@ -287,7 +287,7 @@ mod tests {
             assert!(four.windows(2).all(|pair| pair[0] != pair[1]), "{four:?}");
         }
         // The right texels of two rows copy those left of them: one has a track, the other merged shade.
-        let own = [spans(1, &[[0.1, 0.2]]), Vec::new(), merged.clone(), Vec::new()];
+        let own = [spans(1, &[[0.1, 0.2]]), Vec::new(), merged, Vec::new()];
         let found = page(&own);
         let page = Linked { size: PageSize { width: 2, height: 2 }, source: &[0, 0, 2, 2], is_open: &|_, _| true };
         let tracks = number_tracks(&found, &page);

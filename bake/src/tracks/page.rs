@@ -84,7 +84,7 @@ fn gains(tracks: &PageTracks, linked: &Linked, texels: &[u32], width_t: f32) -> 
     let mut has_tracks = vec![false; count];
     texels.iter().for_each(|&texel| has_tracks[texel as usize] = true);
     let pair = |texel: usize, step: usize, way: usize| {
-        let is_inside = if step == 1 { texel % width > 0 && texel % width + 1 < width } else { true };
+        let is_inside = step != 1 || (1..width - 1).contains(&(texel % width));
         let (before, after) = (texel.checked_sub(step)?, texel + step);
         let is_open = is_inside && after < count && (linked.is_open)(before, way) && (linked.is_open)(texel, way);
         (is_open && has_tracks[before] && has_tracks[after]).then_some([before, after])

@@ -126,7 +126,7 @@ fn missing_files_are_named() {
 
 #[test]
 fn invalid_options_are_refused() {
-    let cases: [(&[&str], i32, &[&str]); 35] = [
+    let cases: [(&[&str], i32, &[&str]); 36] = [
         (&["--place", "91,0"], 1, &["latitude 91", "-90..=90"]),
         (&["--place", "0,181"], 1, &["longitude 181", "-180..=180"]),
         (&["--place", "nan,0"], 1, &["not a place", "48.2,16.4"]),
