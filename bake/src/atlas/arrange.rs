@@ -296,6 +296,20 @@ impl AtlasPlan {
         self.pages.iter().map(|p| p.size).collect()
     }
 
+    /// Of the charts that have a density of their own and are too long for a page at it, the one that gets the least
+    /// share: its instance, and the texels a metre that were asked for and that it gets.
+    pub fn most_capped(&self, items: &[AtlasMesh]) -> Option<(usize, f64, f64)> {
+        let capped = |piece: &Piece| {
+            let PieceKind::Chart(chart, chart_box) = piece.kind else { return None };
+            let AtlasMesh { form: MeshLayout::Charts(charts), instances, .. } = &items[piece.item] else { return None };
+            let asked = charts.own_density(chart).or(instances[0].own_density)?;
+            let reached = chart_box.density / instances[0].metres_per_unit;
+            (reached < 0.9 * asked).then_some((instances[0].index, asked, reached))
+        };
+        let all = self.pages.iter().flat_map(|page| &page.pieces).filter_map(capped);
+        all.min_by(|a, b| (a.2 / a.1).total_cmp(&(b.2 / b.1)))
+    }
+
     /// Writes the placements of all placed instances; the others are not changed.
     pub fn write_placements(&self, items: &[AtlasMesh], placements: &mut [Placement]) {
         for (page, planned) in self.pages.iter().enumerate() {

@@ -34,6 +34,7 @@ pub fn build(
         let plan = find_plan(settings, &mut items, &mut warnings, &meter)?;
         let mut atlas = assemble(scene, &items, &plan);
         warnings.extend(measure::fit_warning(scene, settings, &items, &atlas));
+        warnings.extend(measure::cap_warning(scene, settings, &items, &plan));
         atlas.warnings = warnings;
         let crowded = measure::crowded_items(scene, &items, &atlas);
         if crowded.is_empty() {

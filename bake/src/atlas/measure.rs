@@ -1,6 +1,6 @@
 //! Measures a finished atlas: covered texels, and warnings about it.
 
-use super::arrange::{AtlasMesh, MeshLayout};
+use super::arrange::{AtlasMesh, AtlasPlan, MeshLayout};
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, FILE_SET};
 use crate::scene::{Scene, each_once};
@@ -50,6 +50,23 @@ impl Atlas {
         let square_m: f64 = areas.sum();
         if square_m > 0.0 { (texels_of_instance(scene, self, instance) / square_m).sqrt() } else { 0.0 }
     }
+}
+
+/// A warning if some mesh did not get the density that was asked for it or for what lies around it.
+pub(super) fn cap_warning(
+    scene: &Scene,
+    settings: &AtlasSettings,
+    items: &[AtlasMesh],
+    plan: &AtlasPlan,
+) -> Option<Warning> {
+    let (instance, asked_per_metre, reached_per_metre) = plan.most_capped(items)?;
+    Some(Warning::LessDensity {
+        meshes: 1,
+        page_size_texels: settings.page_size_texels,
+        asked_per_metre,
+        mesh: scene.meshes[scene.instances[instance].mesh].label(),
+        reached_per_metre,
+    })
 }
 
 /// A warning if some meshes did not get the requested density.

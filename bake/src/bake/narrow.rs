@@ -1,7 +1,7 @@
 //! Objects that are too small for their texels.
 
 use crate::atlas::Atlas;
-use crate::scene::{Scene, each_once, label_of};
+use crate::scene::{Instance, Scene, each_once, label_of};
 use crate::warning::Warning;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -36,31 +36,28 @@ pub(super) fn narrow_warning(scene: &Scene, atlas: &Atlas) -> Option<Warning> {
 }
 
 /// Widths of the texels of all that has some, and where they lie.
-struct TexelWidths {
+struct TexelWidths<'a> {
+    atlas: &'a Atlas,
     /// Width in metres, of those that have texels.
     of_instances: Vec<Option<f64>>,
     widest_m: f64,
     boxes: Vec<[DVec3; 2]>,
 }
 
-impl TexelWidths {
-    fn new(scene: &Scene, atlas: &Atlas) -> Self {
+impl<'a> TexelWidths<'a> {
+    fn new(scene: &Scene, atlas: &'a Atlas) -> Self {
         let widths_m = atlas.texel_widths_m(scene).into_iter().enumerate();
         let has_texels = |instance: usize| scene.receives(instance) && !atlas.placements[instance].is_empty();
         let of_instances: Vec<_> = widths_m.map(|(i, width_m)| Some(width_m).filter(|_| has_texels(i))).collect();
         let widest_m = of_instances.iter().flatten().copied().fold(0.0, f64::max);
         let boxes = (0..scene.instances.len()).into_par_iter().map(|i| box_of(scene, i)).collect();
-        Self { of_instances, widest_m, boxes }
+        Self { atlas, of_instances, widest_m, boxes }
     }
 
     /// Width of the widest texels of an object and, if it casts a shadow, of what reaches into its box, made larger by
     /// the object's size on all sides: there its shadow falls.
     fn on_or_around(&self, scene: &Scene, instance: usize, width_m: f64) -> f64 {
         let own_m = self.of_instances[instance].unwrap_or(0.0);
-        // Triangles around it have it; those farther away do not count.
-        if let Some(texels_per_metre) = scene.instances[instance].role.texels_per_metre_around {
-            return own_m.max(1.0 / texels_per_metre);
-        }
         if !scene.casts(instance) || width_m >= NARROW_TEXELS * self.widest_m {
             return own_m;
         }
@@ -68,8 +65,31 @@ impl TexelWidths {
         let reach_m = (high - low).max_element();
         let [low, high] = [low - reach_m, high + reach_m];
         let is_near = |[from, to]: &[DVec3; 2]| from.cmple(high).all() && to.cmpge(low).all();
-        let near = self.boxes.iter().zip(&self.of_instances).filter(|(place, _)| is_near(place));
-        near.filter_map(|(_, width_m)| *width_m).fold(own_m, f64::max)
+        let has_own = scene.instances[instance].role.texels_per_metre_around.is_some();
+        let near = self.boxes.iter().zip(&self.of_instances).enumerate().filter(|(_, (place, _))| is_near(place));
+        let width_m = |(other, (_, width_m)): (usize, (_, &Option<f64>))| {
+            // Triangles around it are denser than those farther away, which do not count.
+            width_m.map(|mean_m| if has_own { self.widest_within(scene, other, [low, high]) } else { mean_m })
+        };
+        near.filter_map(width_m).fold(own_m, f64::max)
+    }
+
+    /// Width of the widest texels of an instance's triangles that reach into a box.
+    fn widest_within(&self, scene: &Scene, instance: usize, [low, high]: [DVec3; 2]) -> f64 {
+        let Instance { mesh, bake_from_object, .. } = &scene.instances[instance];
+        let (mesh, layout) = (&scene.meshes[*mesh], &self.atlas.layouts[*mesh]);
+        let page = self.atlas.pages[self.atlas.placements[instance].page as usize];
+        let width_m = |(corners, own): (&[u32], &[u32])| {
+            let place = |k: usize| bake_from_object.transform_point3(mesh.positions[corners[k] as usize].as_dvec3());
+            let [a, b, c] = [0, 1, 2].map(place);
+            if !(a.min(b).min(c).cmple(high).all() && a.max(b).max(c).cmpge(low).all()) {
+                return 0.0;
+            }
+            let [p, q, r] = [0, 1, 2].map(|k| self.atlas.texel(instance, layout.uvs[own[k] as usize], page));
+            let texels = (q - p).perp_dot(r - p).abs();
+            if texels > 0.0 { ((b - a).cross(c - a).length() / texels).sqrt() } else { 0.0 }
+        };
+        mesh.indices.chunks_exact(3).zip(layout.indices.chunks_exact(3)).map(width_m).fold(0.0, f64::max)
     }
 }
 
@@ -100,6 +120,31 @@ mod tests {
     use crate::atlas::{self, AtlasSettings, Density};
     use crate::testing::{SceneBuilder, block, floor, opaque};
     use glam::{Vec2, Vec3};
+
+    #[test]
+    fn a_density_around_an_object_that_does_not_fit_its_page_is_told() {
+        let mut scene = SceneBuilder::new()
+            .soup(&floor(Vec2::splat(-16.0), Vec2::splat(16.0), 0.0))
+            .soup(&block(Vec3::ZERO, Vec3::splat(0.1)))
+            .build();
+        scene.instances[1].role.texels_per_metre_around = Some(80.0);
+        let settings = AtlasSettings { page_size_texels: 512, ..AtlasSettings::default() };
+        let built = atlas::build(&scene, &settings, &|_| true).unwrap();
+        // The ground's two triangles both reach there, and 32 metres have 512 texels at most.
+        let told = built.warnings.iter().find_map(|warning| match warning {
+            Warning::LessDensity { asked_per_metre, reached_per_metre, .. } => {
+                Some([*asked_per_metre, *reached_per_metre])
+            }
+            _ => None,
+        });
+        assert!(told.is_some_and(|[asked, reached]| asked == 80.0 && (10.0..16.0).contains(&reached)), "{told:?}");
+        let narrow = narrow_warning(&scene, &built);
+        assert!(matches!(narrow, Some(Warning::Narrow { count: 1, .. })), "{narrow:?}");
+        let larger = AtlasSettings { page_size_texels: 4096, ..settings };
+        let built = atlas::build(&scene, &larger, &|_| true).unwrap();
+        assert!(built.warnings.iter().all(|warning| !matches!(warning, Warning::LessDensity { .. })));
+        assert_eq!(narrow_warning(&scene, &built), None);
+    }
 
     #[test]
     fn what_is_narrower_than_two_texels_is_named_until_texels_on_it_and_around_it_are_dense() {

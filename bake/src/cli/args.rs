@@ -157,8 +157,8 @@ pub struct LampArgs {
 pub struct CostArgs {
     /// Edge of a page in texels, 64 to 16384. [default: 512, 2048 or 4096, by preset]
     ///
-    /// Without --texels-per-metre the whole scene is fitted into one page of this size. Time and bytes grow with the
-    /// square.
+    /// Without --texels-per-metre the whole scene is fitted into one page of this size; objects with a --density of
+    /// their own may take more, or a larger one. Time and bytes grow with the square.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(64..=16384))]
     pub size: Option<u32>,
     /// Texels per metre, on as many pages as that takes. [default: as dense as one page allows]
@@ -328,9 +328,9 @@ pub struct InspectArgs {
 pub struct TexelsArgs {
     /// The set's folder.
     pub set: PathBuf,
-    /// How many texels, 1 or more; at most all that are covered.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..))]
-    pub count: u64,
+    /// How many texels, 1 to 4294967295; at most all that are covered.
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    pub count: u32,
     /// Which texels: the same seed draws the same ones.
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,

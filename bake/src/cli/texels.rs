@@ -8,8 +8,7 @@ use sunbake::texels::draw;
 /// Prints `--count` texels drawn by `--seed`.
 pub fn run(args: &TexelsArgs) -> Result<(), Failure> {
     let set = read(&args.set)?;
-    let count = usize::try_from(args.count).unwrap_or(usize::MAX);
-    let texels = draw(&set, count, args.seed).map_err(sunbake::BakeError::from)?;
+    let texels = draw(&set, args.count as usize, args.seed).map_err(sunbake::BakeError::from)?;
     let mut lines = String::new();
     for texel in &texels {
         lines += &serde_json::to_string(texel).map_err(|e| Failure::io(e.to_string()))?;

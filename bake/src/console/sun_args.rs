@@ -17,7 +17,7 @@ pub struct SunArgs {
     /// Degrees north and east, as 48.2,16.4. [default: the scene's directional light, or else 40,0]
     #[arg(long, value_name = "LAT,LON", value_parser = parse_place, allow_hyphen_values = true)]
     pub place: Option<[f64; 2]>,
-    /// Local date. [default: 2026-06-21]
+    /// Local date, of a day at --place instead of the scene's directional light. [default: 2026-06-21]
     ///
     /// The path runs from sunrise to sunset of that day, unless a window is given. Sunrise and sunset are those of the
     /// centre of the sun's disc on a level horizon, without refraction.

@@ -179,6 +179,14 @@ pub fn stage(
         TechniqueChoice::Map(_) => stage.without_sun(),
         TechniqueChoice::Volumes(_) | TechniqueChoice::Truth(_) => stage.without_times(),
     };
+    let shows_sun_alone =
+        output == OutputChoice::Visibility && look.light != LightChoice::Lamp || look.light == LightChoice::Sun;
+    let has_times = stage.pages.iter().any(|page| !page.lanes.is_empty());
+    if is_baked && shows_sun_alone && stage.path.is_some() && !has_times {
+        return Err(Failure::usage(
+            "this set has no times of the sun, which would be dark everywhere: bake it with --only intervals,ao",
+        ));
+    }
     let best = stage.best_ambient();
     let is_lit = output != OutputChoice::Visibility && matches!(look.light, LightChoice::Both | LightChoice::Sky);
     let model = match look.ambient.model() {
