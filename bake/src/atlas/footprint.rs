@@ -56,8 +56,8 @@ impl Footprint {
         [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y]
     }
 
-    /// How much each texel counts in [`Self::blend`], in `f32` and with what stands between them; none where the darkest
-    /// of them counts.
+    /// How much each texel counts in [`Self::blend`], in `f32` and with what stands between them; none where the
+    /// darkest of them counts.
     pub fn blend_weights(&self) -> Option<[f32; 4]> {
         match self.reach {
             None => {

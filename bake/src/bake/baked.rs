@@ -125,6 +125,7 @@ mod tests {
     use super::*;
     use crate::ambient::AmbientSettings;
     use crate::atlas::{self, AtlasSettings};
+    use crate::disk::manifest::TrackStats;
     use crate::disk::read;
     use crate::maps::PageMaps;
     use crate::progress::Silent;
@@ -171,7 +172,8 @@ mod tests {
 
     /// A manifest without what no two bakes share.
     fn timeless(manifest: &Manifest) -> Manifest {
-        let stats = Stats { seconds: StepSeconds::default(), ..manifest.stats.clone() };
+        let tracks = manifest.stats.tracks.map(|tracks| TrackStats { seconds: 0.0, ..tracks });
+        let stats = Stats { seconds: StepSeconds::default(), tracks, ..manifest.stats.clone() };
         Manifest { stats, ..manifest.clone() }
     }
 

@@ -38,6 +38,8 @@ use crate::maps::Bits;
 pub const OWN_PLANE: u32 = u32::MAX;
 /// The occluder that stands for all of them together, where a texel has no tracks.
 pub const MERGED: u32 = u32::MAX - 1;
+/// The occluder that stands for all of them together, where all texels around are dark as well.
+pub const DEEP: u32 = u32::MAX - 2;
 /// Most spans of a texel.
 pub const MOST_SPANS: usize = (1 << COUNT_BITS) - 1;
 /// Most spans of a page.
@@ -65,7 +67,7 @@ pub fn span_texels(spans: u64) -> u64 {
 /// A span of shade by one occluder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FoundSpan {
-    /// The occluder's part, [`OWN_PLANE`] or [`MERGED`].
+    /// The occluder's part, [`OWN_PLANE`], [`MERGED`] or [`DEEP`].
     pub part: u32,
     /// When it starts: a code of 16 bits.
     pub start: u16,

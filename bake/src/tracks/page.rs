@@ -5,10 +5,17 @@
 //! texel to texel, no occluder is the same in two of them. So each texel is foretold from those on both sides of it, by
 //! tracks and by blending, and compared with what it sees ([`gains`]); where tracks foretell no better, around it as a
 //! whole, texels keep their merged shade. So does one with more spans than are stored.
+//!
+//! Where occluders abut, one texel may be dark for one of them and the next for the other, and each of the two tracks
+//! ends before a point between. That would be light in deep shade. So a texel that is dark for long together with all
+//! texels around it says so in a span of its own ([`DEEP`]): the times of four such spans are dark for all four texels,
+//! and so are times between them.
 
 use super::evaluate::blended;
 use super::link::Linked;
-use super::{FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackCounts, TrackSpan, find_spans, number_tracks};
+use super::{
+    DEEP, FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackCounts, TrackSpan, find_spans, number_tracks,
+};
 use crate::atlas::{Around, PageSize, SurfacePoint, is_open};
 use crate::maps::Bits;
 use crate::visibility::{Intervals, OccluderFinder};
@@ -18,6 +25,8 @@ use rayon::prelude::*;
 const MOST_DIFFERENCE: f64 = 0.01;
 /// Mean visibility by which tracks must foretell texels better than blending does.
 const LEAST_GAIN: f32 = 0.002;
+/// Sun's widths for which a texel and all around it must be dark together, for the shade to be deep.
+const LEAST_DEPTH: f64 = 20.0;
 /// Moments at which a texel is foretold.
 const MOMENTS: u32 = 32;
 /// Share of the sun's width below which spans are too short to be seen.
@@ -58,15 +67,22 @@ pub fn page_tracks(finder: &OccluderFinder, shade: &PageShade) -> (PageTracks, T
 
 /// The spans of a page: those found of the texels that keep them, and merged shade of the others.
 fn with_merged(shade: &PageShade, texels: &[u32], found: &FoundSpans, is_kept: &[bool]) -> (FoundSpans, TrackCounts) {
+    let around = Around::new(shade.size, shade.walls);
     let mut counts = TrackCounts::default();
     let mut all = FoundSpans::default();
     let mut with_tracks = texels.iter().enumerate().peekable();
     for texel in 0..shade.source.len() {
         let index = with_tracks.next_if(|(_, with)| **with as usize == texel).map(|(index, _)| index);
-        match index.filter(|&index| is_kept[index]).map(|index| found.of_texel(index)) {
+        let with_depth = |index: usize| {
+            let mut spans = found.of_texel(index).to_vec();
+            let own_plane = spans.partition_point(|span| span.part < DEEP);
+            spans.splice(own_plane..own_plane, deep_shade(shade, around, texel));
+            spans
+        };
+        match index.filter(|&index| is_kept[index]).map(with_depth) {
             Some(spans) if spans.len() <= MOST_SPANS => {
                 counts.texels += 1;
-                all.push(spans.iter().copied());
+                all.push(spans);
             }
             own => {
                 counts.crowded_texels += u64::from(own.is_some());
@@ -158,6 +174,25 @@ fn difference(some: &[FoundSpan], others: &[FoundSpan]) -> u32 {
         }
     }
     length(some) + length(others) - 2 * both
+}
+
+/// When a texel and all around it are dark for long.
+fn deep_shade(shade: &PageShade, around: Around, texel: usize) -> Vec<FoundSpan> {
+    let max_code = Bits::Sixteen.max_code();
+    let least_codes = LEAST_DEPTH * shade.width_t * f64::from(max_code);
+    let near = std::iter::once(texel).chain(around.texels(texel));
+    let mut lit: Vec<FoundSpan> =
+        near.flat_map(|texel| shade.lit.of_texel(shade.source[texel] as usize)).copied().collect();
+    lit.sort_unstable_by_key(|span| span.start);
+    let mut dark = Vec::new();
+    let mut from = 0;
+    for span in &lit {
+        dark.push([from, span.start.max(from)]);
+        from = from.max(span.end);
+    }
+    dark.push([from, max_code]);
+    let is_long = |[start, end]: &[u16; 2]| f64::from(end - start) >= least_codes;
+    dark.into_iter().filter(is_long).map(|[start, end]| FoundSpan { part: DEEP, start, end }).collect()
 }
 
 /// The shade between lit intervals; of more than are stored, that which is wrong for the shortest time.

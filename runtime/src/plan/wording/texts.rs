@@ -282,7 +282,7 @@ pub const TEXTS: [EffectText; 46] = [
         name: "several-pages",
         would_take: "the textures and bindings of one page more, and a draw",
         off_by: "a set baked with a larger --size, or without --texels-per-metre",
-        on_by: "a set baked with --texels-per-metre, --density or --density-around and a small --size, or with --no-receive",
+        on_by: "a set baked with --texels-per-metre or a --density and a small --size, or with --no-receive",
         ..NONE
     },
     EffectText {
