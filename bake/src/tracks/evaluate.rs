@@ -10,6 +10,8 @@ use crate::maps::Bits;
 
 /// Parts of the sun's width.
 const PARTS: usize = 8;
+/// Visibility that is left by rounding, and is none.
+const ROUNDING: f32 = 1e-5;
 
 /// Share of the sun that a point sees at `t`, in [0, 1]: see [`crate::maps::soft_visibility`] for the sun's width.
 pub fn tracked_visibility(tracks: &PageTracks, footprint: &Footprint, t: f32, width_t: f32) -> f32 {
@@ -32,14 +34,15 @@ pub(super) fn blended(spans: [&[TrackSpan]; 4], weights: [f32; 4], t: f32, width
     let mut hidden = [0.0f32; PARTS];
     let mut hide = |start: f32, end: f32, weight: f32| {
         for (part, hidden) in hidden.iter_mut().enumerate() {
-            let from = window_start + part as f32 * part_codes;
+            // From the window's start: far from it, codes are as coarse as `f32`.
+            let from = part as f32 * part_codes;
             *hidden += weight * (end.min(from + part_codes) - start.max(from)).max(0.0);
         }
     };
     let sum: f32 = weights.iter().sum();
     // There is no sun before and after the path.
-    hide(f32::NEG_INFINITY, 0.0, sum);
-    hide(max_code, f32::INFINITY, sum);
+    hide(f32::NEG_INFINITY, -window_start, sum);
+    hide(max_code - window_start, f32::INFINITY, sum);
     let mut rest = spans;
     for (spans, weight) in rest.iter_mut().zip(weights) {
         if weight <= 0.0 {
@@ -56,8 +59,9 @@ pub(super) fn blended(spans: [&[TrackSpan]; 4], weights: [f32; 4], t: f32, width
                 *spans = others;
             }
         }
-        hide(start / weight, end / weight, weight);
+        hide(start / weight - window_start, end / weight - window_start, weight);
     }
     let open: f32 = hidden.iter().map(|hidden| (sum * part_codes - hidden).max(0.0)).sum();
-    open / width_codes
+    let seen = open / width_codes;
+    if seen < ROUNDING { 0.0 } else { seen }
 }

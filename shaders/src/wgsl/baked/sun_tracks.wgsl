@@ -10,10 +10,12 @@
 const SPAN_CODES: f32 = 65535.0;
 // More than any track's number.
 const NO_TRACK: u32 = 65536u;
+// Visibility that is left by rounding, and is none.
+const ROUNDING: f32 = 1e-5;
 
-// The sun's width in eight parts, and how much of each is hidden.
+// The sun's width in eight parts, and how much of each is hidden. Codes are counted from where they begin: far from it,
+// codes are as coarse as f32.
 struct Parts {
-    start: vec4<f32>,
     width: f32,
     first: vec4<f32>,
     last: vec4<f32>,
@@ -47,7 +49,7 @@ fn shade_of(span: u32) -> vec2<f32> {
 // Hides what lies between two codes.
 fn hide(parts: ptr<function, Parts>, shade: vec2<f32>, weight: f32) {
     let width = (*parts).width;
-    let start = (*parts).start;
+    let start = width * vec4<f32>(0.0, 1.0, 2.0, 3.0);
     let later = start + 4.0 * width;
     let zero = vec4<f32>(0.0);
     (*parts).first += weight * max(min(vec4<f32>(shade.y), start + width) - max(vec4<f32>(shade.x), start), zero);
@@ -63,11 +65,11 @@ fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
     let width_codes = max(frame.width_t * SPAN_CODES, 1.0);
     let window_start = frame.t * SPAN_CODES - 0.5 * width_codes;
     let part = width_codes / 8.0;
-    var parts = Parts(window_start + part * vec4<f32>(0.0, 1.0, 2.0, 3.0), part, vec4<f32>(0.0), vec4<f32>(0.0));
+    var parts = Parts(part, vec4<f32>(0.0), vec4<f32>(0.0));
     let sum = dot(weights, vec4<f32>(1.0));
     // There is no sun before and after the path.
-    hide(&parts, vec2<f32>(window_start, 0.0), sum);
-    hide(&parts, vec2<f32>(SPAN_CODES, window_start + width_codes), sum);
+    hide(&parts, vec2<f32>(0.0, -window_start), sum);
+    hide(&parts, vec2<f32>(SPAN_CODES - window_start, width_codes), sum);
     var lists = array<vec2<u32>, 4>();
     var tracks = array<u32, 4>();
     for (var k = 0; k < 4; k++) {
@@ -92,11 +94,12 @@ fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
                 tracks[k] = next_track(lists[k]);
             }
         }
-        hide(&parts, shade / weight, weight);
+        hide(&parts, shade / weight - window_start, weight);
     }
     let open = max(vec4<f32>(sum * part) - parts.first, vec4<f32>(0.0))
         + max(vec4<f32>(sum * part) - parts.last, vec4<f32>(0.0));
-    return dot(open, vec4<f32>(1.0)) / width_codes;
+    let seen = dot(open, vec4<f32>(1.0)) / width_codes;
+    return select(seen, 0.0, seen < ROUNDING);
 }
 
 fn page_visibility(page_uv: vec2<f32>) -> f32 {
