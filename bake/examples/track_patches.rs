@@ -155,7 +155,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             counts.sort_unstable();
             let n = points.len() as f64;
             println!(
-                "{title:<14}{density:>4}  {}  {}  {}   {:5.1} {:5.1} (95 %: {}, most {})   {plain_seconds:.2} {found_seconds:.2} {seconds:.2}",
+                "{title:<14}{density:>4}  {}  {}  {}   {:5.1} {:5.1} (95 %: {}, most {})   {plain_seconds:.2} \
+                 {found_seconds:.2} {seconds:.2}",
                 errors[0],
                 errors[1],
                 errors[2],

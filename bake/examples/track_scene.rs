@@ -159,8 +159,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let station = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/gas_station.glb");
     let files = if files.is_empty() { vec![station] } else { files };
     println!(
-        "scene, page: bilinear, sharp, tracks: mean (rms) in percent; texels with tracks, crowded; spans a texel; MiB of \
-         maps, of tracks; seconds of times, with tracks"
+        "scene, page: bilinear, sharp, tracks: mean (rms) in percent; texels with tracks, crowded; spans a texel; MiB \
+         of maps, of tracks; seconds of times, with tracks"
     );
     files.iter().try_for_each(|file| measure(file, size))
 }

@@ -42,8 +42,8 @@ pub struct BakeSettings {
     pub smooth_terminator: bool,
     /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
-    /// Whether shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few times
-    /// the time of the intervals, and bytes where shadows are dense.
+    /// Whether shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few
+    /// times the time of the intervals, and bytes where shadows are dense.
     pub finds_tracks: bool,
     /// Ambient light, if it is baked.
     pub ambient: Option<AmbientRequest>,

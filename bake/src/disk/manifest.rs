@@ -174,8 +174,8 @@ pub struct AtlasEntry {
     /// alpha (to the lower), of the codes that [`crate::atlas::wall_code`] makes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub walls: Option<String>,
-    /// The sun's shade occluder by occluder, where it was asked for. A reader may ignore it: `lanes` say when texels are
-    /// lit.
+    /// The sun's shade occluder by occluder, where it was asked for. A reader may ignore it: `lanes` say when texels
+    /// are lit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tracks: Option<TracksEntry>,
     /// Ambient visibility, 0 is occluded: a grey PNG; or, if some texel has two sides, an RGB PNG with the front in

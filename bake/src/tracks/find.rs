@@ -17,8 +17,8 @@ const ABSENT: u32 = u32::MAX;
 type Shades = Vec<(u32, Intervals)>;
 
 /// Finds the spans of some texels of a page, in their order; each has a `point`. Spans shorter than `least_t`, in path
-/// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and of
-/// that of texels around it, if they are asked for as well and none of the page's `walls` parts them.
+/// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and
+/// of that of texels around it, if they are asked for as well and none of the page's `walls` parts them.
 pub fn find_spans(
     finder: &OccluderFinder,
     texels: &[u32],

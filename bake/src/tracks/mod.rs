@@ -9,8 +9,8 @@
 //!
 //! An occluder is a connected part of the scene ([`crate::scene::Components`]). It may hide the sun several times: each
 //! such *span* is matched with the spans of the same occluder in the texels to the right and below, and spans that
-//! match, directly or through others, make a *track*. Playback needs no more than the tracks' numbers: texels list their
-//! spans by ascending number, and equal numbers are blended.
+//! match, directly or through others, make a *track*. Playback needs no more than the tracks' numbers: texels list
+//! their spans by ascending number, and equal numbers are blended.
 //!
 //! **Practice.**
 //!
