@@ -10,6 +10,9 @@ use crate::settings::{AmbientRequest, BakeSettings};
 pub(super) const BYTES_PER_SAMPLE: u64 = 100;
 /// Bytes of a covered texel for each lane beyond the first: its intervals.
 const BYTES_PER_LANE: u64 = 60;
+/// Bytes of a covered texel while tracks are found: 27 spans, as our station has them, which are held as they are found,
+/// with merged shade between, as sets of links and as they are stored.
+const BYTES_PER_TRACKS: u64 = 27 * 30;
 /// Bytes of a texel of a loss map: its numbers, and their copies while they are written.
 const BYTES_PER_LOSS: u64 = 24;
 /// Additional bytes of a triangle's corners while the ambient visibility of vertices is baked.
@@ -42,6 +45,7 @@ pub(super) fn bytes_needed(scene: &Scene, settings: &BakeSettings, page_size_tex
     let triangles = scene.triangle_count() as u64 * a_triangle;
     let a_sample = if settings.bakes_intervals { BYTES_PER_SAMPLE } else { size_of::<Sample>() as u64 + 4 };
     let loss_map = if settings.loss_map { BYTES_PER_LOSS } else { 0 };
+    let tracks = if settings.finds_tracks && settings.bakes_intervals { BYTES_PER_TRACKS } else { 0 };
     let ambient = settings.ambient.as_ref().map_or(0, |request| ambient_bytes(scene, request));
-    codes + texels * (a_sample + BYTES_PER_LANE * (lanes - 1) + loss_map + ambient) + triangles
+    codes + texels * (a_sample + BYTES_PER_LANE * (lanes - 1) + tracks + loss_map + ambient) + triangles
 }

@@ -139,7 +139,8 @@ fn bake_prepared(
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let track_path = path.filter(|_| settings.finds_tracks);
+    // Tracks are read as shares of the sun's width.
+    let track_path = path.filter(|path| settings.finds_tracks && path.angular_radius_rad > 0.0);
     let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
     let parts = track_path.map(|_| Components::new(scene, &geometry));
     let finder = track_engine.as_ref().zip(parts.as_ref()).map(|(engine, parts)| OccluderFinder::new(engine, parts));

@@ -88,7 +88,7 @@ impl FoundSpan {
 pub struct FoundSpans {
     /// For each texel, where its spans begin; one more at the end.
     pub first: Vec<u32>,
-    /// All spans.
+    /// Those of all texels, one texel's after the other's.
     pub spans: Vec<FoundSpan>,
 }
 
