@@ -10,8 +10,8 @@ use crate::settings::{AmbientRequest, BakeSettings};
 pub(super) const BYTES_PER_SAMPLE: u64 = 100;
 /// Bytes of a covered texel for each lane beyond the first: its intervals.
 const BYTES_PER_LANE: u64 = 60;
-/// Bytes of a covered texel while tracks are found: 27 spans, as our station has them, which are held as they are found,
-/// with merged shade between, as sets of links and as they are stored.
+/// Bytes of a covered texel while tracks are found: 27 spans, as our station has them, which are held as they are
+/// found, with merged shade between, as sets of links and as they are stored.
 const BYTES_PER_TRACKS: u64 = 27 * 30;
 /// Bytes of a texel of a loss map: its numbers, and their copies while they are written.
 const BYTES_PER_LOSS: u64 = 24;
