@@ -10,6 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 use sunbake::atlas::{Footprint, PageSize, SurfacePoint};
 use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
+use sunbake::progress::Silent;
 use sunbake::scene::{Components, Geometry, LoadLimits, Scene, load};
 use sunbake::sun::{DayOutcome, DayRequest};
 use sunbake::trace::{Direction, Tracer};
@@ -127,7 +128,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let least_t = path.width_t(0.5) / 8.0;
             let texels: Vec<u32> = (0..points.len() as u32).filter(|&texel| points[texel as usize].is_some()).collect();
             let point = |texel: u32| points[texel as usize].unwrap_or_else(|| unreachable!("it has a point"));
-            let found = find_spans(&finder, &texels, &point, size, None, least_t);
+            let found = find_spans(&finder, &texels, &point, size, None, least_t, &Silent);
             let found_seconds = started.elapsed().as_secs_f64();
             let tracks: PageTracks = number_tracks(&found, &Linked { size, source: &texels, is_open: &|_, _| true });
             let seconds = started.elapsed().as_secs_f64();

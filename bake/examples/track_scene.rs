@@ -12,7 +12,7 @@ use sunbake::atlas::{Atlas, Footprint, SurfacePoint};
 use sunbake::maps::{edge_sample, sharpened, soft_visibility};
 use sunbake::progress::Silent;
 use sunbake::scene::{Geometry, LoadLimits, Scene, load};
-use sunbake::settings::{BakeSettings, SunRequest};
+use sunbake::settings::{BakeSettings, SunRequest, TrackChoice};
 use sunbake::sun::DayRequest;
 use sunbake::trace::Tracer;
 use sunbake::tracks::tracked_visibility;
@@ -97,7 +97,7 @@ fn measure(file: &Path, page_size_texels: u32) -> Result<(), Box<dyn Error>> {
     let settings = BakeSettings { page_size_texels, ambient: None, ..BakeSettings::standard(SunRequest::Day(day)) };
     let plain = bake_scene(&scene, &settings, &Silent)?;
     let Bake { manifest, pages, path, bits, scene_glb, .. } =
-        bake_scene(&scene, &BakeSettings { finds_tracks: true, ..settings }, &Silent)?;
+        bake_scene(&scene, &BakeSettings { tracks: TrackChoice::Auto, ..settings }, &Silent)?;
     let path = path.ok_or("the sun does not rise")?;
     let scene = sunbake::scene::parse(file, &scene_glb, &LoadLimits::default())?;
     let (atlas, geometry) = (manifest.atlas(&scene), manifest.geometry(&scene));

@@ -13,6 +13,8 @@ pub enum BakeStep {
     Bvh,
     /// Finding the sun's lit intervals. Counts texels.
     Visibility,
+    /// Finding shadow tracks. Counts texels that may have some, twice.
+    Tracks,
     /// Finding the lamp's lit intervals. Counts texels.
     Lamp,
     /// Finding ambient light. Counts texels.
@@ -31,6 +33,7 @@ impl BakeStep {
             Self::Unwrap => "unwrapping",
             Self::Bvh => "building the hierarchy",
             Self::Visibility => "tracing the sun",
+            Self::Tracks => "following shadows",
             Self::Lamp => "tracing the lamp",
             Self::Ambient => "tracing the sky",
             Self::Encode => "encoding",

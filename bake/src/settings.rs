@@ -42,9 +42,9 @@ pub struct BakeSettings {
     pub smooth_terminator: bool,
     /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
-    /// Whether shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few
-    /// times the time of the intervals, and bytes where shadows are dense.
-    pub finds_tracks: bool,
+    /// Where shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few times
+    /// the time of the intervals, and bytes where shadows are dense. A light without width has none.
+    pub tracks: TrackChoice,
     /// Ambient light, if it is baked.
     pub ambient: Option<AmbientRequest>,
     /// How lit intervals are found.
@@ -59,6 +59,30 @@ pub struct BakeSettings {
     pub threads: usize,
     /// Memory that the bake may plan for; more is refused before it is taken.
     pub max_memory_bytes: u64,
+}
+
+/// Where shadow tracks are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum TrackChoice {
+    /// Nowhere.
+    #[default]
+    Off,
+    /// Where they foretell what texels see better than blending does, those that gain most first, within the bytes of
+    /// the textures of lit intervals, in whose place they are read.
+    Auto,
+    /// Wherever shade moves from texel to texel.
+    On,
+}
+
+impl TrackChoice {
+    /// As the command line takes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Auto => "auto",
+            Self::On => "on",
+        }
+    }
 }
 
 /// Which ambient light to bake, and how to store it.
@@ -203,7 +227,7 @@ impl BakeSettings {
             lane_count: 1,
             smooth_terminator: true,
             bakes_intervals: true,
-            finds_tracks: false,
+            tracks: TrackChoice::Off,
             ambient: Some(AmbientRequest::with_rays(128)),
             engine: EngineChoice::Exact,
             loss_map: false,

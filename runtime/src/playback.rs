@@ -82,10 +82,8 @@ impl<'a> Page<'a> {
                 let of_tracks = |tracks| tracked_visibility(tracks, &footprint, moment.t, moment.width_t);
                 self.maps.tracks.as_ref().map_or(0.0, of_tracks)
             }
-            Filter::Bilinear | Filter::Tracks => {
-                self.footprint(page_uv).blend(|texel| self.disc_visibility(texel, moment))
-            }
-            Filter::Sharp => {
+            Filter::Bilinear => self.footprint(page_uv).blend(|texel| self.disc_visibility(texel, moment)),
+            Filter::Sharp | Filter::Tracks => {
                 let footprint = self.footprint(page_uv);
                 let mut visibility = 0.0;
                 for (layers, variant) in self.lanes() {
@@ -153,8 +151,10 @@ impl<'a> Page<'a> {
         let of_texel = |texel| soft_visibility(layers, texel, self.bits, lamp.t, lamp.width_t);
         let visibility = match filter {
             Filter::Nearest => of_texel(self.nearest_texel(page_uv)),
-            Filter::Bilinear | Filter::Tracks => self.footprint(page_uv).blend(of_texel),
-            Filter::Sharp => self.sharp_visibility(layers, &self.footprint(page_uv), lamp.t, lamp.width_t),
+            Filter::Bilinear => self.footprint(page_uv).blend(of_texel),
+            Filter::Sharp | Filter::Tracks => {
+                self.sharp_visibility(layers, &self.footprint(page_uv), lamp.t, lamp.width_t)
+            }
         };
         sphere_share.min(visibility)
     }

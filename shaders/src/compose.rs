@@ -66,8 +66,15 @@ pub enum Filter {
     /// The same, and edges of shadows drawn sharply between texels: their distances in time are blended as well.
     Sharp,
     /// The sun's shadows occluder by occluder: times of the same one are blended, then evaluated, so that shadows far
-    /// narrower than a texel are drawn. Where a page has no tracks, and for lamps, as bilinear.
+    /// narrower than a texel are drawn. Texels without tracks, and lamps, are drawn as by the sharp filter.
     Tracks,
+}
+
+impl Filter {
+    /// Whether edges are drawn sharply where a texel has no tracks.
+    fn is_sharp(self) -> bool {
+        matches!(self, Self::Sharp | Self::Tracks)
+    }
 }
 
 /// A lane across the sun's disc, as a page stores it.
@@ -264,7 +271,10 @@ fn push_evaluation(text: &mut String, page: &PageVariant, filter: Filter) {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "const MAX_CODE: f32 = {:?};", f32::from(page.max_code));
     }
-    if filter == Filter::Sharp {
+    if page.reads_tracks() || (filter.is_sharp() && (has_sun || has_lamp)) {
+        text.push_str(wgsl!("baked/edge"));
+    }
+    if filter.is_sharp() {
         if has_sun || has_lamp {
             text.push_str(wgsl!("baked/edge_sample"));
         }
@@ -301,8 +311,8 @@ fn push_lamp(text: &mut String, page: &PageVariant, filter: Filter) {
     text.push_str(&[wgsl!("lamp/lamp"), wgsl!("lamp/maps")].concat());
     text.push_str(&match filter {
         Filter::Nearest => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_nearest")].concat(),
-        Filter::Bilinear | Filter::Tracks => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_bilinear")].concat(),
-        Filter::Sharp => wgsl!("lamp/baked_sharp").to_owned(),
+        Filter::Bilinear => [wgsl!("lamp/baked_texel"), wgsl!("lamp/baked_bilinear")].concat(),
+        Filter::Sharp | Filter::Tracks => wgsl!("lamp/baked_sharp").to_owned(),
     });
     text.push_str(wgsl!("lamp/to_lamp"));
     text.push_str(wgsl!("lamp/baked"));
@@ -322,10 +332,10 @@ fn shading(surface: SurfaceVariant, page: &PageVariant, filter: Filter) -> Strin
     text.push_str(wgsl!("baked/sun_maps"));
     text.push_str(&match filter {
         Filter::Nearest => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_nearest")].concat(),
-        Filter::Bilinear | Filter::Tracks => {
-            [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_bilinear")].concat()
+        Filter::Bilinear => [&disc_visibility(&page.lanes, page.is_point_sun), wgsl!("baked/sun_bilinear")].concat(),
+        Filter::Sharp | Filter::Tracks => {
+            [wgsl!("baked/sun_sharp"), &sharp_visibility(&page.lanes, page.is_point_sun)].concat()
         }
-        Filter::Sharp => [wgsl!("baked/sun_sharp"), &sharp_visibility(&page.lanes, page.is_point_sun)].concat(),
     });
     text.push_str(if page.is_point_sun { wgsl!("baked/sun_point") } else { wgsl!("baked/sun") });
     text

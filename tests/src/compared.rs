@@ -24,6 +24,16 @@ pub fn posts(shift_x_m: f32) -> Scene {
     builder.block(Vec3::new(1.0 + shift_x_m, 0.0, 1.2), Vec3::new(2.0 + shift_x_m, 0.9, 2.0)).build()
 }
 
+/// Ground, and a fence whose pickets and gaps are 7 cm wide.
+pub fn fence() -> Scene {
+    let picket = |i: i32| {
+        let x = -1.4 + 0.14 * i as f32;
+        (Vec3::new(x, 0.0, -0.01), Vec3::new(x + 0.07, 1.0, 0.01))
+    };
+    let ground = SceneBuilder::new().soup(&floor(Vec2::splat(-4.0), Vec2::splat(4.0), 0.0));
+    (0..20).map(picket).fold(ground, |all, (min, max)| all.block(min, max)).build()
+}
+
 /// A midsummer's day at 40 degrees north.
 pub fn summer() -> SunRequest {
     let date = "2026-06-21".parse().expect("a date");

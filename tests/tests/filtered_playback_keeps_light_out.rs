@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3, Vec3Swizzles};
 use sunbake::atlas::{Density, SurfacePoint};
 use sunbake::progress::Silent;
 use sunbake::scene::{Alpha, LoadLimits, Material, Scene};
-use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
+use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest, TrackChoice};
 use sunbake::testing::{SceneBuilder, block, floor, opaque};
 use sunbake::trace::Direction;
 use sunbake::visibility::{ExactEngine, lit_at};
@@ -36,7 +36,7 @@ fn stage_of(scene: &Scene, texels_per_metre: f64, has_walls: bool) -> Stage {
         density: Density::TexelsPerMetre(texels_per_metre),
         page_size_texels: 1024,
         ambient: Some(AmbientRequest::with_rays(64)),
-        finds_tracks: true,
+        tracks: TrackChoice::Auto,
         threads: 1,
         ..BakeSettings::standard(SunRequest::Day(june_day()))
     };

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::path::Path;
 use sunbake_tests::compare_command::{compare, folder_with_set, report_in};
-use sunbake_tests::compared::posts;
+use sunbake_tests::compared::{fence, posts};
 use sunbake_tests::{stderr, write_scene};
 
 /// A report without what a clock says.
@@ -48,19 +48,32 @@ fn a_technique_compared_with_itself_has_no_error_and_two_runs_agree() {
 #[test]
 fn a_scene_is_baked_as_often_as_it_is_played_back() {
     let temporary = tempfile::tempdir().unwrap();
-    let scene = write_scene(&posts(0.0), temporary.path(), "posts");
+    let scene = write_scene(&fence(), temporary.path(), "fence");
     let day =
-        ["--place", "40,0", "--date", "2026-06-21", "--page-size", "128", "--against", "truth:soft:4", "--at", "12:00"];
-    let lanes = |folder: &str, techniques: &str| {
+        ["--place", "40,0", "--date", "2026-12-21", "--page-size", "96", "--against", "truth:soft:4", "--at", "10:00"];
+    let report = |folder: &str, techniques: &str| {
         let folder = temporary.path().join(folder);
         let output = compare(&scene, &folder, &[&day[..], &["--techniques", techniques]].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let sets = report_in(&folder)["scene"]["sets"].clone();
-        sets.as_array().unwrap().iter().map(|set| set["lanes"].as_u64().unwrap()).collect::<Vec<_>>()
+        report_in(&folder)
     };
-    assert_eq!(lanes("both", "baked"), [1, 3]);
-    assert_eq!(lanes("one", "baked:lanes1,truth:hard"), [1]);
-    assert_eq!(lanes("none", "truth:hard"), [0; 0]);
+    let sets = |report: &Value| {
+        let sets = report["scene"]["sets"].as_array().unwrap().iter();
+        sets.map(|set| (set["lanes"].as_u64().unwrap(), set["tracks"].is_object())).collect::<Vec<_>>()
+    };
+    let both = report("both", "baked");
+    assert_eq!(sets(&both), [(1, true), (3, false)]);
+    assert_eq!(sets(&report("one", "baked:lanes1:filtered,truth:hard")), [(1, false)]);
+    assert_eq!(sets(&report("none", "truth:hard")), []);
+    // Tracks are read in place of the intervals, take longer to bake, and draw something else.
+    let of = |name: &str| both["techniques"].as_array().unwrap().iter().find(|one| one["name"] == name).unwrap();
+    let [filtered, tracks] = ["filtered", "tracks"].map(|filter| of(&format!("baked:16:lanes1:{filter}")));
+    let bake_s = |one: &Value| one["preparation"]["bake_s"].as_f64().unwrap();
+    assert!(bake_s(tracks) > bake_s(filtered));
+    let tracks_bytes = both["scene"]["sets"][0]["tracks"]["disk_bytes"].as_u64().unwrap();
+    assert_eq!(tracks["disk_bytes"].as_u64(), Some(tracks_bytes));
+    let mean = |one: &Value| one["error"]["mean"].as_f64().unwrap();
+    assert!(mean(tracks) < 0.5 * mean(filtered), "{} {}", mean(tracks), mean(filtered));
 }
 
 #[test]
@@ -119,7 +132,10 @@ fn what_cannot_be_compared_is_refused_and_nothing_is_left() {
     let found = report_in(&report);
     let left: Vec<&str> =
         found["left_out"].as_array().unwrap().iter().map(|left| left["name"].as_str().unwrap()).collect();
-    assert!(left.len() == 11 && left.contains(&"volumes") && left.contains(&"map:pcss"), "{left:?}");
+    assert!(
+        left.len() == 12 && left.contains(&"baked:tracks") && left.contains(&"volumes") && left.contains(&"map:pcss"),
+        "{left:?}"
+    );
     assert!(found["machine"]["adapter"].is_null() && found["warnings"][0].as_str().unwrap().contains("No GPU"));
     // An older report is replaced if asked to be, and only then.
     let again = compare(&set, &report, &options[..4]);

@@ -129,7 +129,7 @@ mod tests {
     use crate::disk::read;
     use crate::maps::PageMaps;
     use crate::progress::Silent;
-    use crate::settings::{AmbientRequest, SunRequest, VertexAttribute};
+    use crate::settings::{AmbientRequest, SunRequest, TrackChoice, VertexAttribute};
     use crate::sun::DayRequest;
     use crate::testing::{SceneBuilder, block, floor, opaque};
     use crate::{bake, bake_scene, glb};
@@ -162,7 +162,7 @@ mod tests {
             page_size_texels: 64,
             bits,
             lane_count: 3,
-            finds_tracks: true,
+            tracks: TrackChoice::Auto,
             ambient: Some(ambient),
             loss_map: cfg!(feature = "exr"),
             threads: 1,

@@ -3,7 +3,7 @@
 use crate::ambient::Estimate;
 use crate::atlas::Sample;
 use crate::scene::Scene;
-use crate::settings::{AmbientRequest, BakeSettings};
+use crate::settings::{AmbientRequest, BakeSettings, TrackChoice};
 
 /// Bytes of a covered texel while its page is baked: its sample, its intervals (three, as a town has on average, and
 /// the vectors around them) and its share of the loss statistics.
@@ -45,7 +45,7 @@ pub(super) fn bytes_needed(scene: &Scene, settings: &BakeSettings, page_size_tex
     let triangles = scene.triangle_count() as u64 * a_triangle;
     let a_sample = if settings.bakes_intervals { BYTES_PER_SAMPLE } else { size_of::<Sample>() as u64 + 4 };
     let loss_map = if settings.loss_map { BYTES_PER_LOSS } else { 0 };
-    let tracks = if settings.finds_tracks && settings.bakes_intervals { BYTES_PER_TRACKS } else { 0 };
+    let tracks = if settings.tracks != TrackChoice::Off && settings.bakes_intervals { BYTES_PER_TRACKS } else { 0 };
     let ambient = settings.ambient.as_ref().map_or(0, |request| ambient_bytes(scene, request));
     codes + texels * (a_sample + BYTES_PER_LANE * (lanes - 1) + tracks + loss_map + ambient) + triangles
 }

@@ -140,11 +140,15 @@ fn bake_prepared(
     let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
     let duration_min = path.map_or(0.0, |p| p.duration_min);
     // Tracks are read as shares of the sun's width.
-    let track_path = path.filter(|path| settings.finds_tracks && path.angular_radius_rad > 0.0);
+    let track_path = path.filter(|_| plan.is_on(Effect::ShadowTracks));
     let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
     let parts = track_path.map(|_| Components::new(scene, &geometry));
     let finder = track_engine.as_ref().zip(parts.as_ref()).map(|(engine, parts)| OccluderFinder::new(engine, parts));
-    let tracks = finder.as_ref().zip(path).map(|(finder, path)| TrackJob { finder, width_t: path.width_t(0.5) });
+    let tracks = finder.as_ref().zip(path).map(|(finder, path)| TrackJob {
+        finder,
+        width_t: path.width_t(0.5),
+        choice: settings.tracks,
+    });
     let step = BakeStep::Visibility;
     let sun = engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, step, tracks });
     let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
@@ -167,6 +171,7 @@ fn bake_prepared(
     let (vertices_glb, vertices) = pages.bake_vertices()?.unzip();
     let needed = layers_needed(&pages, &atlases);
     let walled = [atlases.iter().filter(|page| page.walls.is_some()).count(), atlases.len()];
+    let tracked_texels = pages.stats.tracks.map_or(0, |tracks| tracks.texels);
     let mut manifest = finished(pages, prepared, &lights, settings);
     if let Some(ambient) = &mut manifest.ambient {
         ambient.vertices = vertices;
@@ -175,7 +180,7 @@ fn bake_prepared(
         scene: SceneEntry { sha256: Some(scene::sha256(&written.bytes)), ..manifest.scene },
         atlases,
         instances: instance_entries(scene, atlas, &written),
-        effects: plan.clone().after_bake(needed, walled).entries(),
+        effects: plan.clone().after_bake(needed, walled, tracked_texels).entries(),
         ..manifest
     };
     check_cancelled(progress)?;

@@ -10,7 +10,7 @@ use crate::disk::BakedPage;
 use crate::disk::manifest::{AtlasEntry, Stats};
 use crate::glb::OcclusionPage;
 use crate::loss_map::LossMap;
-use crate::maps::{AmbientMaps, LaneMaps, PageMaps};
+use crate::maps::{AmbientMaps, GpuTexel, LaneMaps, PageMaps};
 use crate::progress::{BakeStep, Progress};
 use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
@@ -168,19 +168,22 @@ impl<'a> PageBaker<'a> {
         })
     }
 
-    fn find_tracks(&mut self, baker: TrackBaker) -> Option<PageTracks> {
+    /// The tracks of a page, which take no more bytes than `lanes`.
+    fn find_tracks(&mut self, baker: TrackBaker, lanes: &[LaneMaps]) -> Option<PageTracks> {
         let started = Instant::now();
-        let found = baker.find(self.scene, self.geometry);
+        let layers: usize = lanes.iter().map(|lane| lane.layers.len()).sum();
+        let texel = GpuTexel { layers: layers as u32, bits: self.settings.bits.count(), ..GpuTexel::default() };
+        let most_bytes = baker.texel_count() * texel.bytes();
+        let (tracks, counts) = baker.find(self.scene, self.geometry, most_bytes, self.progress);
         let seconds = started.elapsed().as_secs_f64();
         let stats = self.stats.tracks.get_or_insert_default();
         self.stats.seconds.visibility += seconds;
         stats.seconds += seconds;
-        let (tracks, counts) = found?;
         stats.texels += counts.texels;
         stats.crowded_texels += counts.crowded_texels;
-        stats.spans += tracks.spans.len() as u64;
-        stats.gpu_bytes += tracks.gpu_bytes();
-        Some(tracks)
+        stats.spans += tracks.as_ref().map_or(0, |tracks| tracks.spans.len() as u64);
+        stats.gpu_bytes += tracks.as_ref().map_or(0, PageTracks::gpu_bytes);
+        tracks
     }
 
     fn encode(
@@ -218,6 +221,8 @@ impl<'a> PageBaker<'a> {
             encoders.copy(copy.texel as usize, texels[copy.sample as usize].texel as usize);
         }
         self.stats.seconds.encode += started.elapsed().as_secs_f64();
-        (encoders.finish(), track_baker.and_then(|baker| self.find_tracks(baker)))
+        let lanes = encoders.finish();
+        let tracks = track_baker.and_then(|baker| self.find_tracks(baker, &lanes));
+        (lanes, tracks)
     }
 }

@@ -2,8 +2,10 @@
 
 use super::pages::PageTexels;
 use crate::atlas::{PageSize, surface_point};
+use crate::progress::Progress;
 use crate::scene::{Geometry, Scene};
-use crate::tracks::{FoundSpan, FoundSpans, MERGED, MOST_PAGE_SPANS, PageShade, PageTracks, TrackCounts, page_tracks};
+use crate::settings::TrackChoice;
+use crate::tracks::{FoundSpan, FoundSpans, MERGED, PageShade, PageTracks, TrackCounts, page_tracks};
 use crate::visibility::{Intervals, OccluderFinder};
 
 /// How tracks are found.
@@ -13,6 +15,8 @@ pub(super) struct TrackJob<'a> {
     pub finder: &'a OccluderFinder<'a>,
     /// Width of the sun in path time.
     pub width_t: f64,
+    /// Where tracks are wanted.
+    pub choice: TrackChoice,
 }
 
 /// Takes the intervals of a page's texels in their order, and then finds its tracks.
@@ -32,14 +36,25 @@ impl<'a> TrackBaker<'a> {
         Self { job, size, texels, lit: FoundSpans::default(), is_filled: Vec::new() }
     }
 
+    /// Texels of the page.
+    pub fn texel_count(&self) -> u64 {
+        u64::from(self.size.width) * u64::from(self.size.height)
+    }
+
     /// Adds the next texel's intervals. `is_filled`: they are what its neighbours agree on.
     pub fn add(&mut self, lit: &Intervals, is_filled: bool) {
         self.lit.push(lit.as_slice().iter().map(|&lit| FoundSpan::new(MERGED, lit)));
         self.is_filled.push(is_filled);
     }
 
-    /// None where there are too many.
-    pub fn find(self, scene: &Scene, geometry: &Geometry) -> Option<(PageTracks, TrackCounts)> {
+    /// Finds the tracks, which take no more than so many bytes.
+    pub fn find(
+        self,
+        scene: &Scene,
+        geometry: &Geometry,
+        most_bytes: u64,
+        progress: &dyn Progress,
+    ) -> (Option<PageTracks>, TrackCounts) {
         let Self { job, size, texels, .. } = &self;
         let samples = &texels.samples.samples;
         let count = size.width * size.height;
@@ -62,9 +77,17 @@ impl<'a> TrackBaker<'a> {
             let sample = texels.order[place[texel as usize] as usize];
             surface_point(scene, geometry, &samples[sample as usize])
         };
-        let (width_t, walls) = (job.width_t, texels.walls);
-        let shade =
-            PageShade { size: *size, source: &source, lit: &lit, has_point: &has_point, point: &point, walls, width_t };
-        Some(page_tracks(job.finder, &shade)).filter(|(tracks, _)| tracks.spans.len() < MOST_PAGE_SPANS)
+        let shade = PageShade {
+            size: *size,
+            source: &source,
+            lit: &lit,
+            has_point: &has_point,
+            point: &point,
+            walls: texels.walls,
+            width_t: job.width_t,
+            choice: job.choice,
+            most_bytes: if job.choice == TrackChoice::Auto { most_bytes } else { u64::MAX },
+        };
+        page_tracks(job.finder, &shade, progress)
     }
 }

@@ -2,13 +2,13 @@
 
 use super::values::{
     parse_attribute, parse_bits, parse_budget, parse_bytes, parse_density, parse_edge_seconds, parse_engine,
-    parse_error, parse_lanes, parse_metres, parse_only, parse_rays, parse_window,
+    parse_error, parse_lanes, parse_metres, parse_only, parse_rays, parse_tracks, parse_window,
 };
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use sunbake::console::{DensityArgs, ObjectArgs, SunArgs};
 use sunbake::maps::Bits;
-use sunbake::settings::{EngineChoice, VertexAttribute};
+use sunbake::settings::{EngineChoice, TrackChoice, VertexAttribute};
 
 /// Bakes when every texel of a glTF scene sees the sun.
 #[derive(Debug, Parser)]
@@ -188,8 +188,11 @@ pub struct CostArgs {
     ///
     /// `sunplay --filter tracks` then draws shadows far narrower than texels, as those of fences, as clean lines. Takes
     /// up to a few times the time of the intervals, and bytes where shadows are dense: see `tracks` in the summary.
-    #[arg(long)]
-    pub tracks: bool,
+    /// auto, which is meant without a value, keeps them where they gain something, within the bytes that the intervals
+    /// take on a GPU; on keeps them wherever shade moves.
+    #[arg(long, value_name = "auto|on|off", value_parser = parse_tracks, num_args = 0..=1, require_equals = true,
+          default_missing_value = "auto")]
+    pub tracks: Option<TrackChoice>,
     /// How to find the times: exact, rays:N or bisect:N, N from 2 to 65536. [default: exact]
     ///
     /// exact finds every edge in closed form and misses nothing. The others are for comparison. rays:N traces rays to N

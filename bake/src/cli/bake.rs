@@ -6,7 +6,7 @@ use std::path::Path;
 use sunbake::atlas::Density;
 use sunbake::console::{Command, Failure, ProgressLine, print, print_json, warn_all};
 use sunbake::lamp::is_lamp;
-use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest};
+use sunbake::settings::{AmbientRequest, BakeSettings, SunRequest, TrackChoice};
 use sunbake::sun::KeyedError;
 use sunbake::{BakeError, BakeReport};
 
@@ -97,7 +97,7 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
         bits: cost.bits.unwrap_or(preset.bits),
         layer_cap: cost.layers.map_or(preset.layer_cap, |n| n as usize),
         lane_count: cost.lanes,
-        finds_tracks: cost.tracks,
+        tracks: cost.tracks.unwrap_or(preset.tracks),
         smooth_terminator: !args.flat_terminator,
         bakes_intervals,
         ambient: ambient(args, preset.ambient)?,
@@ -110,10 +110,14 @@ fn settings(args: &BakeArgs) -> Result<BakeSettings, Failure> {
     })
 }
 
+fn finds_tracks(args: &BakeArgs) -> bool {
+    args.cost.tracks.is_some_and(|choice| choice != TrackChoice::Off)
+}
+
 /// Refuses what is about a sun where the path is a lamp's.
 fn check_lamp_alone(args: &BakeArgs, bakes_intervals: bool) -> Result<(), Failure> {
     let of_sun =
-        [(args.cost.lanes > 1, "--lanes"), (args.cost.tracks, "--tracks"), (args.sun.day.north.is_some(), "--north")];
+        [(args.cost.lanes > 1, "--lanes"), (finds_tracks(args), "--tracks"), (args.sun.day.north.is_some(), "--north")];
     if let Some((_, option)) = of_sun.into_iter().find(|(is_given, _)| *is_given) {
         return Err(Failure::usage(format!(
             "{option} is about the sun, and --path is of a lamp that is baked instead: leave {option} out, or give the \
@@ -164,7 +168,7 @@ fn times_flag(args: &BakeArgs) -> Option<&'static str> {
         ("--bits", cost.bits.is_some()),
         ("--layers", cost.layers.is_some()),
         ("--lanes", cost.lanes > 1),
-        ("--tracks", cost.tracks),
+        ("--tracks", finds_tracks(args)),
         ("--engine", cost.engine.is_some()),
         ("--edge-seconds", cost.edge_seconds.is_some()),
         ("--flat-terminator", args.flat_terminator),

@@ -2,7 +2,7 @@
 
 use super::args::Only;
 use sunbake::maps::Bits;
-use sunbake::settings::{EngineChoice, VertexAttribute};
+use sunbake::settings::{EngineChoice, TrackChoice, VertexAttribute};
 
 pub fn parse_only(text: &str) -> Result<Only, String> {
     match text {
@@ -43,6 +43,12 @@ pub fn parse_attribute(text: &str) -> Result<VertexAttribute, String> {
 pub fn parse_bits(text: &str) -> Result<Bits, String> {
     let count = text.parse().ok().and_then(Bits::from_count);
     count.ok_or_else(|| format!("`{text}` is no depth of a stored time: give 8 or 16"))
+}
+
+pub fn parse_tracks(text: &str) -> Result<TrackChoice, String> {
+    let all = [TrackChoice::Auto, TrackChoice::On, TrackChoice::Off];
+    let choice = all.into_iter().find(|choice| choice.name() == text);
+    choice.ok_or_else(|| format!("`{text}` is no choice of tracks: give auto, on or off"))
 }
 
 pub fn parse_lanes(text: &str) -> Result<usize, String> {

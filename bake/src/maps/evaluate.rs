@@ -51,7 +51,7 @@ pub fn hard_visibility(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32) -
 }
 
 /// Distance in time beyond which an edge says nothing, in widths of the light.
-const SHARP_REACH: f32 = 16.0;
+pub(crate) const SHARP_REACH: f32 = 16.0;
 
 /// Visibility of a lone edge at a signed distance in widths of the light.
 fn ramp(distance: f32) -> f32 {
@@ -80,8 +80,12 @@ pub fn edge_sample(layers: &[LayerMaps], texel: usize, bits: Bits, t: f32, width
             distance = distance.max(after_rise.min(before_fall));
         }
     }
-    let distance_widths = distance.min(reach) / width_codes;
-    Vec3::new((lit_codes / width_codes).min(1.0), distance_widths + SHARP_REACH, ramp(distance_widths))
+    edge_sample_of((lit_codes / width_codes).min(1.0), distance.min(reach) / width_codes)
+}
+
+/// The same of a visibility and a signed distance in widths of the light.
+pub(crate) fn edge_sample_of(visibility: f32, distance_widths: f32) -> Vec3 {
+    Vec3::new(visibility, distance_widths + SHARP_REACH, ramp(distance_widths))
 }
 
 /// Visibility from blended samples of texels.

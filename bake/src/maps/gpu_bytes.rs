@@ -3,9 +3,10 @@
 use super::{Bits, PageMaps};
 
 /// The textures of ambient light that a shader reads. Each takes bytes per texel and per side of a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AmbientTextures {
     /// None.
+    #[default]
     None,
     /// Ambient occlusion: one 16-bit number, 2 bytes.
     Occlusion,
@@ -28,7 +29,7 @@ impl AmbientTextures {
 }
 
 /// What a GPU stores for each texel of a page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct GpuTexel {
     /// Layers of rise and fall times: those of all lanes of the sun, and those of the lamp.
     pub layers: u32,

@@ -16,6 +16,7 @@ pub(crate) use ambient::in_8_bits;
 pub use ambient::{AmbientMaps, AmbientSide, decode_share, decode_signed, encode_share, encode_signed};
 pub use cap::{CapLoss, fit_to_cap};
 pub use encode::{EncodeLoss, PageEncoder};
+pub(crate) use evaluate::{SHARP_REACH, edge_sample_of};
 pub use evaluate::{edge_sample, hard_visibility, sharpened, soft_visibility};
 pub use gpu_bytes::{AmbientTextures, GpuTexel};
 pub use lanes::Lane;

@@ -17,7 +17,7 @@ use crate::disk::manifest::{EffectEntry, SMOOTH_TERMINATOR};
 use crate::lamp::LampPath;
 use crate::maps::Bits;
 use crate::scene::Scene;
-use crate::settings::{AmbientRequest, BakeSettings, EngineChoice};
+use crate::settings::{AmbientRequest, BakeSettings, EngineChoice, TrackChoice};
 use crate::sun::SunPath;
 
 /// An effect that a bake may hold.
@@ -31,6 +31,8 @@ pub enum Effect {
     Penumbra,
     /// Several paths across the sun's disc.
     DiscLanes,
+    /// The shade of each occluder by itself, beside lit intervals.
+    ShadowTracks,
     /// More than one layer of four intervals.
     SeveralLayers,
     /// Times of 16 bits, not 8.
@@ -67,6 +69,7 @@ impl Effect {
             Self::LampIntervals => "lamp-intervals",
             Self::Penumbra => "penumbra",
             Self::DiscLanes => "disc-lanes",
+            Self::ShadowTracks => "shadow-tracks",
             Self::SeveralLayers => "several-layers",
             Self::SixteenBitTimes => "16-bit-times",
             Self::LossMap => "loss-map",
@@ -130,6 +133,15 @@ pub enum Facts {
         count: usize,
         /// Whether the sun has a width, if there is a sun.
         has_width: Option<bool>,
+    },
+    /// Shadow tracks.
+    Tracks {
+        /// Where they are asked for.
+        choice: TrackChoice,
+        /// Whether the sun has a width, if there is a sun.
+        has_width: Option<bool>,
+        /// Texels with tracks, of how many; known after the bake.
+        texels: Option<[u64; 2]>,
     },
     /// Layers of four intervals.
     Layers {
@@ -240,12 +252,16 @@ impl EffectPlan {
         self.decisions.iter().any(|d| d.effect == effect && d.is_on)
     }
 
-    /// The plan corrected by how many layers texels turned out to need, and how many of all pages have walls.
-    pub fn after_bake(mut self, found: LayersNeeded, walled: [usize; 2]) -> Self {
+    /// The plan corrected by how many layers texels turned out to need, how many of all pages have walls, and how many
+    /// texels have tracks.
+    pub fn after_bake(mut self, found: LayersNeeded, walled: [usize; 2], tracked_texels: u64) -> Self {
         for decision in &mut self.decisions {
             match &mut decision.facts {
                 Facts::Layers { has_times: true, needed, .. } => {
                     (*needed, decision.is_on) = (Some(found), found.layers > 1);
+                }
+                Facts::Tracks { texels, .. } if decision.is_on => {
+                    (*texels, decision.is_on) = (Some([tracked_texels, found.texels]), tracked_texels > 0);
                 }
                 Facts::Walls { pages } => (*pages, decision.is_on) = (Some(walled), walled[0] > 0),
                 _ => {}

@@ -3,7 +3,7 @@
 use super::{Decision, Effect, Facts, NoSun};
 use crate::lamp::LampPath;
 use crate::maps::Bits;
-use crate::settings::BakeSettings;
+use crate::settings::{BakeSettings, TrackChoice};
 use crate::sun::SunPath;
 
 /// What decides about times.
@@ -18,8 +18,8 @@ pub(super) struct Times<'a> {
 }
 
 impl Times<'_> {
-    pub fn decisions(&self) -> [Decision; 7] {
-        let &BakeSettings { bits, engine, layer_cap, lane_count, loss_map, .. } = self.settings;
+    pub fn decisions(&self) -> [Decision; 8] {
+        let &BakeSettings { bits, engine, layer_cap, lane_count, loss_map, tracks, .. } = self.settings;
         let has_times = self.path.is_some() || self.lamp.is_some();
         let sun_radius_rad = self.path.map(|path| path.angular_radius_rad);
         let sun_radius_deg = sun_radius_rad.map(f64::to_degrees);
@@ -37,6 +37,11 @@ impl Times<'_> {
                 Effect::DiscLanes,
                 has_width == Some(true) && lane_count > 1,
                 Facts::Lanes { count: lane_count, has_width },
+            ),
+            decision(
+                Effect::ShadowTracks,
+                has_width == Some(true) && tracks != TrackChoice::Off,
+                Facts::Tracks { choice: tracks, has_width, texels: None },
             ),
             decision(
                 Effect::SeveralLayers,

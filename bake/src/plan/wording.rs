@@ -5,7 +5,7 @@
 use super::{Decision, Effect, Facts, LayersNeeded, NoSun};
 use crate::disk::manifest::EffectEntry;
 use crate::maps::Bits;
-use crate::settings::{AmbientRequest, EngineChoice};
+use crate::settings::{AmbientRequest, EngineChoice, TrackChoice};
 use crate::words::{counted, either};
 
 /// What the manifest says of a decision.
@@ -33,6 +33,22 @@ fn why(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Lanes { has_width: Some(false), .. } => "a light without width has no disc to divide into lanes".into(),
         Facts::Lanes { count, .. } if is_on => format!("--lanes {count}: edges along the path soften in {count} steps"),
         Facts::Lanes { .. } => "the sun is taken as a line along its path; --lanes 3 or 5 divides its disc".into(),
+        Facts::Tracks { choice: TrackChoice::Off, .. } => {
+            "not asked for; --tracks draws shadows that are narrower than texels".into()
+        }
+        Facts::Tracks { has_width: None, .. } => "there is no sun".into(),
+        Facts::Tracks { has_width: Some(false), .. } => "they are read as shares of a light's width".into(),
+        Facts::Tracks { texels: Some([0, all]), .. } => {
+            format!("none of {} would gain anything", counted(all, "texel"))
+        }
+        Facts::Tracks { texels: Some([some, all]), .. } => {
+            let have = either(some, "has", "have");
+            format!("{some} of {} {have} some", counted(all, "texel"))
+        }
+        Facts::Tracks { choice: TrackChoice::Auto, .. } => {
+            "--tracks: where shade moves from texel to texel, and they draw it better".into()
+        }
+        Facts::Tracks { .. } => "--tracks=on: wherever shade moves from texel to texel".into(),
         Facts::Layers { has_times: false, .. } | Facts::Depth { half_step_s: None, .. } => "no times are stored".into(),
         Facts::Layers { cap, needed: Some(needed), .. } => why_layers(cap, needed),
         Facts::Layers { cap: 1, .. } => "--layers 1: what is beyond four intervals is merged".into(),
@@ -157,6 +173,9 @@ fn cost(effect: Effect, is_on: bool, facts: Facts) -> String {
             let times = if is_on { count.to_string() } else { "3 or 5".into() };
             format!("{times} times the bytes of one lane's times, and {times} times the work of finding them")
         }
+        Facts::Tracks { .. } => {
+            "a query for each occluder of such a texel; 4 bytes a texel and 6 a span, read in place of the times".into()
+        }
         Facts::Layers { bits, .. } => format!("{} and lane for each layer beyond the first", bytes_of_times(bits)),
         Facts::Depth { .. } => "twice the bytes of times: 16 a texel, layer and lane, where 8 bits take 8".into(),
         Facts::Losses { .. } => {
@@ -240,6 +259,11 @@ fn toggled_by(effect: Effect, is_on: bool, facts: Facts) -> String {
         Facts::Lanes { has_width: None, .. } => "a sun, and --lanes 3 or 5",
         Facts::Lanes { has_width: Some(false), .. } => "a light with a width, and --lanes 3 or 5",
         Facts::Lanes { .. } => "--lanes 3 or 5",
+        Facts::Tracks { texels: Some([0, _]), .. } => "a scene with fences, posts or wires, or coarser texels",
+        Facts::Tracks { .. } if is_on => "--tracks=off",
+        Facts::Tracks { has_width: Some(true), .. } => "--tracks",
+        Facts::Tracks { has_width: None, .. } => "a sun, and --tracks",
+        Facts::Tracks { .. } => "a light with a width, and --tracks",
         Facts::Layers { has_times: false, .. } | Facts::Depth { half_step_s: None, .. } => "times to store",
         Facts::Layers { cap: 1, .. } => "--layers 2 or more",
         Facts::Layers { needed: Some(LayersNeeded { layers: 0 | 1, .. }), .. } => {

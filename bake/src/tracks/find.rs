@@ -3,6 +3,7 @@
 use super::{FoundSpan, FoundSpans, OWN_PLANE};
 use crate::atlas::{Around, PageSize, SurfacePoint};
 use crate::intervals::Intervals;
+use crate::progress::{BakeStep, Progress};
 use crate::visibility::{OccluderFinder, OccluderSession};
 use rayon::prelude::*;
 
@@ -18,7 +19,8 @@ type Shades = Vec<(u32, Intervals)>;
 
 /// Finds the spans of some texels of a page, in their order; each has a `point`. Spans shorter than `least_t`, in path
 /// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and
-/// of that of texels around it, if they are asked for as well and none of the page's `walls` parts them.
+/// of that of texels around it, if they are asked for as well and none of the page's `walls` parts them. Where
+/// `progress` is cancelled, the rest has no spans.
 pub fn find_spans(
     finder: &OccluderFinder,
     texels: &[u32],
@@ -26,10 +28,16 @@ pub fn find_spans(
     size: PageSize,
     walls: Option<&[[u8; 2]]>,
     least_t: f64,
+    progress: &dyn Progress,
 ) -> FoundSpans {
+    progress.start(BakeStep::Tracks, 2 * texels.len() as u64);
     let around = Around::new(size, walls);
     let of_texels = |find: &(dyn Fn(&mut OccluderSession, usize, &SurfacePoint) -> Shades + Sync)| -> Vec<Shades> {
         let of_run = |(run, some): (usize, &[u32])| {
+            if progress.is_cancelled() {
+                return vec![Shades::new(); some.len()];
+            }
+            progress.advance(some.len() as u64);
             let mut session = finder.session();
             let of_texel = |(i, &texel): (usize, &u32)| find(&mut session, run * RUN + i, &point(texel));
             some.iter().enumerate().map(of_texel).collect::<Vec<_>>()
@@ -76,6 +84,7 @@ fn shade_of(
     let shade = facing.without(&session.alone(point, part));
     shade.longer_than(least_t)
 }
+
 /// Parts that together hide the sun from a point whenever it is hidden, none of which can be left out, and when the
 /// surface's own plane does.
 fn cover(session: &mut OccluderSession, point: &SurfacePoint, least_t: f64) -> Shades {
@@ -85,22 +94,69 @@ fn cover(session: &mut OccluderSession, point: &SurfacePoint, least_t: f64) -> S
     let mut shades: Shades =
         parts.into_iter().map(|part| (part, shade_of(session, point, &facing, part, least_t))).collect();
     shades.retain(|(_, shade)| !shade.as_slice().is_empty());
-    // The shortest are tried first.
-    shades.sort_by(|a, b| a.1.lit_length().total_cmp(&b.1.lit_length()).then(a.0.cmp(&b.0)));
-    let mut index = 0;
-    while index < shades.len() {
-        let others = shades.iter().enumerate().filter(|(other, _)| *other != index);
-        let union = others.flat_map(|(_, (_, shade))| shade.as_slice().iter().copied());
-        let union = Intervals::from_unsorted(union.collect());
-        let own_share = shades[index].1.intersection(&shade).without(&union);
-        match own_share.longer_than(least_t.max(TOUCH)).as_slice().is_empty() {
-            true => {
-                shades.remove(index);
-            }
-            false => index += 1,
-        }
-    }
+    keep_needed(&mut shades, &shade, least_t.max(TOUCH));
     shades.push((OWN_PLANE, Intervals::always().without(&facing).longer_than(TOUCH)));
     shades.sort_by_key(|(part, _)| *part);
     shades
+}
+
+/// Leaves out parts that hide nothing for longer than `least_t` that others of them do not, the shortest first.
+fn keep_needed(shades: &mut Shades, shade: &Intervals, least_t: f64) {
+    shades.sort_by(|a, b| a.1.lit_length().total_cmp(&b.1.lit_length()).then(a.0.cmp(&b.0)));
+    // Between two bounds, the same parts hide the sun.
+    let spans = || shades.iter().flat_map(|(_, own)| own.as_slice());
+    let mut bounds: Vec<f64> = spans().chain(shade.as_slice()).flatten().copied().collect();
+    bounds.sort_unstable_by(f64::total_cmp);
+    bounds.dedup();
+    let steps = |span: &[f64; 2]| {
+        let [first, end] = span.map(|t| bounds.partition_point(|bound| *bound < t));
+        first..end
+    };
+    let mut is_dark = vec![false; bounds.len()];
+    shade.as_slice().iter().flat_map(steps).for_each(|step| is_dark[step] = true);
+    let mut hidden_by = vec![0u32; bounds.len()];
+    spans().flat_map(steps).for_each(|step| hidden_by[step] += 1);
+    shades.retain(|(_, own)| {
+        let is_needed = own.as_slice().iter().any(|span| {
+            let mut alone = 0.0;
+            steps(span).any(|step| {
+                let is_alone = is_dark[step] && hidden_by[step] == 1;
+                alone = if is_alone { alone + bounds[step + 1] - bounds[step] } else { 0.0 };
+                alone > least_t
+            })
+        });
+        if !is_needed {
+            own.as_slice().iter().flat_map(steps).for_each(|step| hidden_by[step] -= 1);
+        }
+        is_needed
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kept(parts: &[&[[f64; 2]]], shade: &[[f64; 2]]) -> Vec<u32> {
+        let intervals = |spans: &[[f64; 2]]| Intervals::from_unsorted(spans.to_vec());
+        let mut shades: Shades = (0..).zip(parts).map(|(part, spans)| (part, intervals(spans))).collect();
+        keep_needed(&mut shades, &intervals(shade), 0.01);
+        let mut kept: Vec<u32> = shades.iter().map(|(part, _)| *part).collect();
+        kept.sort_unstable();
+        kept
+    }
+
+    #[test]
+    fn parts_that_others_hide_are_left_out_and_the_rest_hide_as_much() {
+        assert_eq!(kept(&[&[[0.1, 0.5]], &[[0.2, 0.3]]], &[[0.1, 0.5]]), [0]);
+        assert_eq!(kept(&[&[[0.1, 0.3]], &[[0.2, 0.5]]], &[[0.1, 0.5]]), [0, 1]);
+        // The middle one is hidden by both others together, and goes though it is not the shortest on its own.
+        assert_eq!(kept(&[&[[0.1, 0.3]], &[[0.2, 0.4]], &[[0.3, 0.6]]], &[[0.1, 0.6]]), [0, 2]);
+        // Equal ones: one stays.
+        assert_eq!(kept(&[&[[0.1, 0.3]], &[[0.1, 0.3]]], &[[0.1, 0.3]]), [1]);
+        // Alone for no longer than is seen; and where it is not dark, which is rounding.
+        assert_eq!(kept(&[&[[0.1, 0.3]], &[[0.3, 0.305]]], &[[0.1, 0.305]]), [0]);
+        assert_eq!(kept(&[&[[0.1, 0.3]], &[[0.5, 0.6]]], &[[0.1, 0.3]]), [0]);
+        // Pieces that touch count as one.
+        assert_eq!(kept(&[&[[0.1, 0.108], [0.2, 0.216]], &[[0.11, 0.2], [0.208, 0.3]]], &[[0.1, 0.3]]), [1]);
+    }
 }

@@ -7,13 +7,11 @@
 //!
 //! Merged shade is nobody's track: its numbers say which of four texels it is of, and so never meet their own.
 
-use super::{FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackSpan};
+use super::{FIRST_MERGED, FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackSpan};
 use crate::atlas::PageSize;
 use crate::scene::root;
 use smallvec::SmallVec;
 
-/// Numbers of tracks. Those from here on are of merged shade.
-const NUMBERS: u32 = (1 << 16) - 4 * MOST_SPANS as u32;
 /// Rounds in which tracks of one number that meet are told apart; more than a few are never needed.
 const ROUNDS: usize = 32;
 
@@ -79,7 +77,7 @@ pub fn number_tracks(found: &FoundSpans, page: &Linked) -> PageTracks {
             tracks.ranges.push(own);
             continue;
         }
-        let merged = NUMBERS + (page.corner(texel) * MOST_SPANS) as u32;
+        let merged = FIRST_MERGED + (page.corner(texel) * MOST_SPANS) as u32;
         let mut own: SmallVec<[TrackSpan; 16]> = range
             .zip(merged..)
             .map(|(index, merged)| {
@@ -114,7 +112,7 @@ fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 16]>
 }
 
 /// Pairs in ascending order: all of the shorter list, with the least sum of differences in time.
-fn aligned(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 8]> {
+pub(super) fn aligned(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 8]> {
     if some.len() > others.len() {
         return aligned(others, some).into_iter().map(|[a, b]| [b, a]).collect();
     }
@@ -165,10 +163,10 @@ fn numbers(found: &FoundSpans, page: &Linked, track: &[u32]) -> Vec<u16> {
     let mut next = 0u32;
     let is_track = |index: usize| found.spans[index].part != MERGED;
     for index in (0..track.len()).filter(|&index| track[index] as usize == index && is_track(index)) {
-        number[index] = (next % NUMBERS) as u16;
+        number[index] = (next % FIRST_MERGED) as u16;
         next += 1;
     }
-    if next <= NUMBERS {
+    if next <= FIRST_MERGED {
         return number;
     }
     let of_texel = |texel: usize| &track[found.first[texel] as usize..found.first[texel + 1] as usize];
@@ -186,7 +184,7 @@ fn numbers(found: &FoundSpans, page: &Linked, track: &[u32]) -> Vec<u16> {
                 while seen.contains(&number[own]) {
                     next += 1;
                     is_settled = false;
-                    number[own] = (next % NUMBERS) as u16;
+                    number[own] = (next % FIRST_MERGED) as u16;
                 }
                 seen.push(number[own]);
             }
@@ -264,7 +262,7 @@ mod tests {
 
     #[test]
     fn more_tracks_than_numbers_differ_where_they_meet() {
-        let size = PageSize { width: NUMBERS + 1, height: 2 };
+        let size = PageSize { width: FIRST_MERGED + 1, height: 2 };
         let texels = vec![spans(1, &[[0.1, 0.2]]); 2 * size.width as usize];
         let tracks = tracks_of(&page(&texels), size, false);
         let number = |x: usize, y: usize| tracks.of_texel(y * size.width as usize + x)[0].track;

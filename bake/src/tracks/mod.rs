@@ -44,6 +44,8 @@ pub const DEEP: u32 = u32::MAX - 2;
 pub const MOST_SPANS: usize = (1 << COUNT_BITS) - 1;
 /// Most spans of a page.
 pub const MOST_PAGE_SPANS: usize = 1 << (32 - COUNT_BITS);
+/// Numbers of tracks are less: those from here on are of merged shade.
+pub const FIRST_MERGED: u32 = (1 << 16) - 4 * MOST_SPANS as u32;
 /// Bits of a number of spans, beside those of a place.
 const COUNT_BITS: u32 = 6;
 
@@ -159,6 +161,11 @@ impl PageTracks {
 
     /// Bytes that it takes on a GPU: 4 a texel, where its spans lie and how many they are, and 6 a span.
     pub fn gpu_bytes(&self) -> u64 {
-        4 * self.ranges.len() as u64 + 6 * span_texels(self.spans.len() as u64)
+        Self::bytes_of(self.ranges.len() as u64, self.spans.len() as u64)
+    }
+
+    /// The same of this many texels and spans.
+    pub fn bytes_of(texels: u64, spans: u64) -> u64 {
+        4 * texels + 6 * span_texels(spans)
     }
 }

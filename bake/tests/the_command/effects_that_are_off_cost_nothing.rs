@@ -106,7 +106,7 @@ fn every_effect_states_its_cost_and_what_toggles_it() {
     for arguments in [&LEAST[..], &["--only=ao"], &["--place=40,0", "--lanes=5", "--lamp=lamp.json", "--bent"]] {
         let plan = desk.run(&[&["bake", "floor.glb", "--explain", "--json"][..], arguments].concat()).ok().json();
         let plan = plan.as_array().expect("a list");
-        assert_eq!(plan.len(), 17);
+        assert_eq!(plan.len(), 18);
         for effect in plan {
             let is_said = |key: &str| effect[key].as_str().is_some_and(|text| text.len() > 3);
             assert!(is_said("why") && is_said("cost") && is_said("toggled_by"), "{effect}");

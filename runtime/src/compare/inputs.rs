@@ -12,14 +12,17 @@ use std::path::{Path, PathBuf};
 use sunbake::disk::read::read_manifest;
 use sunbake::maps::Bits;
 use sunbake::scene::{LoadLimits, ObjectWishes, Scene};
-use sunbake::settings::{BakeSettings, SunRequest};
+use sunbake::settings::{BakeSettings, SunRequest, TrackChoice};
 use sunbake::{BakeError, Prepared};
+use sunbake_shaders::Filter;
 use tempfile::TempDir;
 
 /// Lanes of the sets that are baked of a scene.
 const LANES: [usize; 2] = [1, 3];
 /// Why a light without width has one lane.
 const NO_DISC: &str = "a light without width has no disc to cut into lanes";
+/// Why it has no tracks.
+const NO_WIDTH: &str = "tracks are read as shares of a light's width, and this one has none";
 /// Edge of the page that a scene is baked into, unless told.
 const PAGE_SIZE_TEXELS: u32 = 2048;
 
@@ -78,8 +81,9 @@ impl ComparisonInputs {
             lanes => vec![1, lanes],
         };
         let is_point = manifest.path.as_ref().is_some_and(|path| path.angular_radius_deg == 0.0);
-        let left_out = not_in_set(bits, lanes, is_point);
-        let all = TechniqueSpec::all(bits, &lane_counts);
+        let has_tracks = set.entry.tracks.is_some();
+        let left_out = not_in_set(bits, lanes, is_point, has_tracks);
+        let all = TechniqueSpec::all(bits, &lane_counts, has_tracks);
         let techniques = selected(&all, &settings.techniques)?;
         if let TechniqueSpec::Baked(_) = settings.against
             && !all.contains(&settings.against)
@@ -98,16 +102,24 @@ impl ComparisonInputs {
         progress: &dyn CompareProgress,
     ) -> Result<Self, CompareError> {
         let source = bake.file.to_owned();
-        let all = TechniqueSpec::all(Bits::Sixteen, &LANES);
+        let all = TechniqueSpec::all(Bits::Sixteen, &LANES, true);
         let mut techniques = selected(&all, &settings.techniques)?;
         let mut left_out = Vec::new();
         let mut wanted: BTreeSet<usize> = techniques.iter().chain([&settings.against]).filter_map(lanes_of).collect();
-        let Prepared { scene, path, .. } = sunbake::prepare(bake.file, &bake.settings(1), progress)?;
+        let Prepared { scene, path, .. } = sunbake::prepare(bake.file, &bake.settings(1, false), progress)?;
         check_request(settings, &scene, path.as_ref())?;
-        if wanted.contains(&3) && path.as_ref().is_some_and(|path| path.angular_radius_rad == 0.0) {
-            wanted = BTreeSet::from([1]);
-            techniques.retain(|one| lanes_of(one).is_none_or(|lanes| lanes == 1));
-            left_out.push(left("baked:lanes3", NO_DISC));
+        let mut wants_tracks = techniques.iter().chain([&settings.against]).any(plays_tracks);
+        if path.as_ref().is_some_and(|path| path.angular_radius_rad == 0.0) {
+            if wanted.contains(&3) {
+                wanted = BTreeSet::from([1]);
+                techniques.retain(|one| lanes_of(one).is_none_or(|lanes| lanes == 1));
+                left_out.push(left("baked:lanes3", NO_DISC));
+            }
+            if wants_tracks {
+                wants_tracks = false;
+                techniques.retain(|one| !plays_tracks(one));
+                left_out.push(left("baked:tracks", NO_WIDTH));
+            }
         }
         if wanted.is_empty() {
             let source_sha256 = scene.source.sha256.clone();
@@ -117,7 +129,7 @@ impl ComparisonInputs {
         }
         drop(scene);
         let work_folder = tempfile::tempdir().map_err(CompareError::WorkFolder)?;
-        let sets = bake.sets(&wanted, work_folder.path(), progress)?;
+        let sets = bake.sets(&wanted, wants_tracks, work_folder.path(), progress)?;
         let manifest = read_manifest(&sets[0].folder).map_err(StageError::Set)?;
         let stage = Stage::read_without_looks(&sets[0].folder)?.without_times();
         let source_sha256 = manifest.source.sha256;
@@ -126,28 +138,31 @@ impl ComparisonInputs {
 }
 
 impl SceneBake<'_> {
-    fn settings(&self, lane_count: usize) -> BakeSettings {
+    fn settings(&self, lane_count: usize, wants_tracks: bool) -> BakeSettings {
         BakeSettings {
             page_size_texels: self.page_size_texels,
             objects: self.objects.clone(),
             lane_count,
+            tracks: if wants_tracks { TrackChoice::Auto } else { TrackChoice::Off },
             ambient: None,
             threads: self.threads,
             ..BakeSettings::standard(self.sun.clone())
         }
     }
 
-    /// A set for each count of lanes.
+    /// A set for each count of lanes, that of one lane with tracks if they are wanted.
     fn sets(
         &self,
         lane_counts: &BTreeSet<usize>,
+        wants_tracks: bool,
         folder: &Path,
         progress: &dyn CompareProgress,
     ) -> Result<Vec<SetOnDisk>, CompareError> {
         let mut sets = Vec::new();
         for &lanes in lane_counts {
             let target = folder.join(format!("lanes{lanes}"));
-            let baked = sunbake::bake(self.file, &target, false, &self.settings(lanes), progress)?;
+            let baked =
+                sunbake::bake(self.file, &target, false, &self.settings(lanes, wants_tracks && lanes == 1), progress)?;
             sets.push(SetOnDisk::read(&target).map_err(StageError::Set)?);
             if sets.len() == 1 {
                 progress.baked(&baked.warnings);
@@ -164,8 +179,12 @@ fn lanes_of(technique: &TechniqueSpec) -> Option<usize> {
     }
 }
 
+fn plays_tracks(technique: &TechniqueSpec) -> bool {
+    matches!(technique, TechniqueSpec::Baked(Playback { filter: Filter::Tracks, .. }))
+}
+
 /// Ways to play a set back that it cannot serve, and why.
-fn not_in_set(bits: Bits, lanes: usize, is_point: bool) -> Vec<LeftOut> {
+fn not_in_set(bits: Bits, lanes: usize, is_point: bool, has_tracks: bool) -> Vec<LeftOut> {
     let mut left_out = Vec::new();
     if bits == Bits::Eight {
         left_out.push(left("baked:16", "the set has times of 8 bits"));
@@ -175,6 +194,9 @@ fn not_in_set(bits: Bits, lanes: usize, is_point: bool) -> Vec<LeftOut> {
         1 if is_point => left_out.push(left("baked:lanes3", NO_DISC)),
         1 => left_out.push(left("baked:lanes3", "the set has one lane across the sun")),
         _ => {}
+    }
+    if lanes > 0 && !has_tracks {
+        left_out.push(left("baked:tracks", if is_point { NO_WIDTH } else { "the set was baked without --tracks" }));
     }
     left_out
 }

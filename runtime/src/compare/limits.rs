@@ -8,6 +8,8 @@ use std::str::FromStr;
 pub enum Limited {
     /// Mean error of visibility.
     Visibility,
+    /// Root of the mean of its squares.
+    Rms,
     /// The error that 99 in 100 pixels do not exceed.
     P99,
     /// The largest error.
@@ -31,8 +33,9 @@ pub enum Limited {
 }
 
 impl Limited {
-    const ALL: [(&'static str, Self); 11] = [
+    const ALL: [(&'static str, Self); 12] = [
         ("visibility", Self::Visibility),
+        ("rms", Self::Rms),
         ("p99", Self::P99),
         ("worst", Self::Worst),
         ("wrong", Self::Wrong),
@@ -54,6 +57,7 @@ impl Limited {
         }
         Some(match self {
             Self::Visibility => error.mean,
+            Self::Rms => error.rms,
             Self::P99 => error.p99,
             Self::Worst => error.worst,
             Self::Wrong => error.wrong_share,

@@ -27,6 +27,8 @@ pub struct Score {
     pub pixels: u64,
     /// Mean error.
     pub mean: f64,
+    /// Root of the mean of its squares: large where few pixels are far off.
+    pub rms: f64,
     /// The error that 99 in 100 pixels do not exceed.
     pub p99: f64,
     /// The largest error.
@@ -107,10 +109,12 @@ impl Tally {
         let mean = |(sum, count): (f64, u64)| if count == 0 { 0.0 } else { sum / count as f64 };
         let all = (self.in_penumbra.0 + self.outside.0, self.in_penumbra.1 + self.outside.1);
         let share = |part: u64| part as f64 / count.max(1) as f64;
+        let squares = self.errors.iter().map(|&error| f64::from(error).powi(2)).sum::<f64>();
         let wrong = self.errors.iter().filter(|&&error| error > WRONG).count() as u64;
         Score {
             pixels: count as u64,
             mean: mean(all),
+            rms: (squares / count.max(1) as f64).sqrt(),
             p99: percentile(&mut self.errors.clone(), 99, f32::total_cmp).map_or(0.0, f64::from),
             worst: f64::from(self.errors.iter().copied().fold(0.0, f32::max)),
             wrong_share: share(wrong),
@@ -159,6 +163,7 @@ mod tests {
     fn the_numbers_are_those_of_a_list_that_one_can_add_up() {
         let found = scored(&[1.0, 0.25, 0.0, 0.75], &[1.0, 0.5, 1.0, 1.0]);
         assert_eq!((found.pixels, found.mean, found.worst, found.wrong_share), (4, 0.375, 1.0, 0.25));
+        assert!((found.rms - (1.125f64 / 4.0).sqrt()).abs() < 1e-9);
         assert_eq!((found.penumbra, found.penumbra_share), (Some(0.25), 0.25));
         assert!((found.outside - 1.25 / 3.0).abs() < 1e-9);
         let ramp: Vec<f32> = (1..=1000).map(|i| i as f32 / 1000.0).collect();

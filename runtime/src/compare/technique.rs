@@ -82,7 +82,7 @@ pub enum TechniqueNameError {
 impl TechniqueSpec {
     /// The one technique that a name selects: of any set, with one, three or five lanes.
     pub fn named(name: &str) -> Result<Self, TechniqueNameError> {
-        let all = Self::all(Bits::Sixteen, &[1, 3, 5]);
+        let all = Self::all(Bits::Sixteen, &[1, 3, 5], true);
         match selected(&all, &[name.to_owned()])?.as_slice() {
             [one] => Ok(*one),
             several => Err(TechniqueNameError::Several {
@@ -93,12 +93,14 @@ impl TechniqueSpec {
     }
 
     /// What is compared unless told otherwise, of sets with these counts of lanes. Of 16 bits, 8 are made as well.
-    pub fn all(most_bits: Bits, lane_counts: &[usize]) -> Vec<Self> {
+    /// Tracks are the middle lane's, and their times are of 16 bits whatever those of the intervals.
+    pub fn all(most_bits: Bits, lane_counts: &[usize], has_tracks: bool) -> Vec<Self> {
         let bits: &[Bits] = if most_bits == Bits::Sixteen { &[Bits::Sixteen, Bits::Eight] } else { &[Bits::Eight] };
         let mut all = Vec::new();
         for &lanes in lane_counts {
             for &bits in bits {
-                for filter in [Filter::Bilinear, Filter::Sharp, Filter::Nearest] {
+                let tracks = (has_tracks && lanes == 1 && bits == most_bits).then_some(Filter::Tracks);
+                for filter in [Filter::Bilinear, Filter::Sharp, Filter::Nearest].into_iter().chain(tracks) {
                     all.push(Self::Baked(Playback { bits, lanes, filter }));
                 }
             }
@@ -185,17 +187,18 @@ mod tests {
     use super::*;
 
     fn names(asked: &[&str]) -> Result<Vec<String>, TechniqueNameError> {
-        let all = TechniqueSpec::all(Bits::Sixteen, &[1, 3]);
+        let all = TechniqueSpec::all(Bits::Sixteen, &[1, 3], true);
         let asked: Vec<String> = asked.iter().map(|&name| name.to_owned()).collect();
         Ok(selected(&all, &asked)?.iter().map(ToString::to_string).collect())
     }
 
     #[test]
     fn a_part_of_a_name_means_all_that_have_it() {
-        assert_eq!(names(&[]).unwrap().len(), 12 + 1 + 10 + 1);
-        assert_eq!(names(&["baked"]).unwrap().len(), 12);
+        assert_eq!(names(&[]).unwrap().len(), 13 + 1 + 10 + 1);
+        assert_eq!(names(&["baked"]).unwrap().len(), 13);
         assert_eq!(names(&["baked:8:nearest"]).unwrap(), ["baked:8:lanes1:nearest", "baked:8:lanes3:nearest"]);
         assert_eq!(names(&["baked:16:lanes3:bilinear"]).unwrap(), ["baked:16:lanes3:filtered"]);
+        assert_eq!(names(&["baked:tracks"]).unwrap(), ["baked:16:lanes1:tracks"]);
         assert_eq!(names(&["map:pcf4", "volumes"]).unwrap(), ["volumes", "map:pcf4"]);
         assert_eq!(names(&["map"]).unwrap().len(), 10);
         assert_eq!(names(&["truth:soft:9", "volumes:zfail"]).unwrap(), ["truth:soft:9", "volumes:zfail"]);

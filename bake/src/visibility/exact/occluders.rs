@@ -107,7 +107,8 @@ impl OccluderSession<'_> {
             let Self { finder, closers, walk, query, .. } = session;
             let closer = &mut closers[arc][start.kind()];
             dispatch!(level, simd => finder.close_all(simd, arc, closer, walk, query));
-            parts.extend(closer.useful.iter().map(|&id| finder.part[id as usize]));
+            let solid = closer.useful.iter().filter(|&&id| !finder.engine.tracer.has_alpha_mask(id));
+            parts.extend(solid.map(|&id| finder.part[id as usize]));
         });
         parts.sort_unstable();
         parts.dedup();

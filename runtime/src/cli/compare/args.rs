@@ -15,8 +15,8 @@ use sunbake_runtime::light::TimeChoice;
 pub struct CompareArgs {
     /// A set's folder, or a scene (.gltf or .glb), which is baked first.
     ///
-    /// A scene is baked twice, with 16 bits and with one lane and three across the sun's disc, for as long as it is
-    /// compared. A set is compared as it is, with what fewer bits and lanes can be made of it.
+    /// A scene is baked twice, with 16 bits and with one lane, with shadow tracks, and three across the sun's disc, for
+    /// as long as it is compared. A set is compared as it is, with what fewer bits and lanes can be made of it.
     pub source: PathBuf,
     /// Folder to write the report to: report.html, report.json and, where something baked was compared, sheet.png.
     #[arg(short, long, value_name = "REPORT")]
@@ -68,7 +68,7 @@ pub struct CompareArgs {
     pub densities: DensityArgs,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.
     ///
-    /// Keys: visibility (mean error), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside
+    /// Keys: visibility (mean error), rms (root of the mean square), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside
     /// (mean errors there), leak (mean light where truth has none), shade (mean shade where it has none), dissimilarity
     /// (1 less the structural similarity), frame_ms, mib. The report is written all the same. Name what it is to hold
     /// for with --techniques.

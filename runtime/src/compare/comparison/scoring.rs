@@ -9,6 +9,7 @@ use super::times::mean_times;
 use super::{Comparison, FrameRequest, LitFrame, SetOnDisk, lit_picture_of};
 use crate::image::Raster;
 use rayon::prelude::*;
+use sunbake_shaders::Filter;
 
 impl Comparison<'_> {
     /// What a report says of a technique. `lumas` are the reference's lit pictures, `hard_truths` truths of the sun's
@@ -56,6 +57,9 @@ impl Comparison<'_> {
         let has_its_lanes = |set: &&SetOnDisk| playback.is_some_and(|one| one.lanes as u64 == set.entry.lanes);
         let has_its_bits = |set: &&SetOnDisk| playback.is_some_and(|one| one.bits.count() == set.entry.bits);
         let set = playback.and_then(|one| set_for(self.sets, one)).filter(has_its_lanes);
+        let tracks = playback.filter(|one| one.filter == Filter::Tracks).and(set).and_then(|set| set.entry.tracks);
+        let track_seconds = tracks.map_or(0.0, |tracks| tracks.bake_s);
+        let disk_bytes = |set: &SetOnDisk| tracks.map_or(set.entry.disk_bytes, |tracks| tracks.disk_bytes);
         TechniqueEntry {
             name: technique.to_string(),
             family: technique.family().into(),
@@ -63,9 +67,12 @@ impl Comparison<'_> {
             error: all.score(),
             hard_error,
             times: mean_times(&drawn.times),
-            preparation: Preparation { bake_s: set.map(|set| set.entry.bake_s), setup_s: drawn.setup_s.max(0.0) },
+            preparation: Preparation {
+                bake_s: set.map(|set| set.entry.bake_s + track_seconds),
+                setup_s: drawn.setup_s.max(0.0),
+            },
             memory_bytes: drawn.memory_bytes,
-            disk_bytes: set.filter(has_its_bits).map(|set| set.entry.disk_bytes),
+            disk_bytes: set.filter(has_its_bits).map(disk_bytes),
             plan: drawn.plan.clone(),
             frames: (0..frames.len()).map(frame_entry).collect(),
         }

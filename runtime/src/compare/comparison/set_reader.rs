@@ -1,6 +1,6 @@
 //! Sets on disk, and the stages that are read from them.
 
-use super::super::report::SetEntry;
+use super::super::report::{SetEntry, SetTracksEntry};
 use super::super::technique::Playback;
 use super::not_drawn::NotDrawn;
 use crate::stage::Stage;
@@ -31,13 +31,20 @@ fn entry_of(folder: &Path, manifest: &Manifest) -> SetEntry {
     let seconds = &manifest.stats.seconds;
     let layers = manifest.atlases.iter().flat_map(|atlas| &atlas.lanes).flat_map(|lane| &lane.layers);
     let size = |name: &String| std::fs::metadata(folder.join(name)).map_or(0, |file| file.len());
+    let tracks = || manifest.atlases.iter().filter_map(|atlas| atlas.tracks.as_ref());
+    let track_seconds = manifest.stats.tracks.map_or(0.0, |tracks| tracks.seconds);
+    let bake_s = seconds.load + seconds.unwrap + seconds.bvh + seconds.visibility + seconds.encode + seconds.write;
     SetEntry {
         lanes: manifest.atlases.iter().map(|atlas| atlas.lanes.len()).max().unwrap_or(0) as u64,
         bits: manifest.bits,
         texels: manifest.stats.texels,
         texels_per_metre: manifest.scene.texels_per_metre,
-        bake_s: seconds.load + seconds.unwrap + seconds.bvh + seconds.visibility + seconds.encode + seconds.write,
+        bake_s: bake_s - track_seconds,
         disk_bytes: layers.map(|layer| size(&layer.rise) + size(&layer.fall)).sum(),
+        tracks: tracks().next().map(|_| SetTracksEntry {
+            bake_s: track_seconds,
+            disk_bytes: tracks().map(|tracks| size(&tracks.lists) + size(&tracks.spans)).sum(),
+        }),
         engine: manifest.stats.engine.clone(),
     }
 }

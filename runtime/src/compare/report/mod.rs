@@ -84,12 +84,24 @@ pub struct SetEntry {
     pub texels: u64,
     /// Density of texels on surfaces.
     pub texels_per_metre: f64,
-    /// Seconds to bake it, without ambient light, on the machine that baked it.
+    /// Seconds to bake it, without ambient light and shadow tracks, on the machine that baked it.
     pub bake_s: f64,
-    /// Bytes of its files, without those of the scene and of ambient light.
+    /// Bytes of its files, without those of the scene, of ambient light and of shadow tracks.
     pub disk_bytes: u64,
+    /// Its shadow tracks; null where there are none.
+    pub tracks: Option<SetTracksEntry>,
     /// Engine that computed its times.
     pub engine: String,
+}
+
+/// The shadow tracks of a baked set.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct SetTracksEntry {
+    /// Seconds to find them, on the machine that baked them, beside those of the set.
+    pub bake_s: f64,
+    /// Bytes of their files, which are read in place of those of the intervals.
+    pub disk_bytes: u64,
 }
 
 /// The machine that drew.
@@ -214,7 +226,8 @@ pub struct Passes {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Preparation {
     /// Seconds to bake, with all steps but ambient light; null where nothing is baked, and for one lane of a set with
-    /// several. For eight bits made of sixteen it is the set's, since rounding takes next to no time.
+    /// several. For eight bits made of sixteen it is the set's, since rounding takes next to no time. For tracks it is
+    /// that of the intervals, which they are found from, and their own.
     pub bake_s: Option<f64>,
     /// Seconds to upload the scene and build pipelines.
     pub setup_s: f64,

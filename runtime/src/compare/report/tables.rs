@@ -9,6 +9,7 @@ pub(super) fn results(report: &Report) -> String {
     let columns = vec![
         Column::words("technique", "A click shows it on the left of the picture"),
         Column::numbers("mean", "error", "Mean error of visibility, 0 to 1, over pixels that show a surface"),
+        Column::numbers("rms", "error", "Root of the mean square: large where few pixels are far off"),
         Column::numbers("99 %", "error", "99 in 100 pixels have a smaller error"),
         Column::numbers("wrong", "% of pixels", "Error above a half: sun for shade, or shade for sun"),
         Column::numbers("penumbra", "mean", "Mean error where the reference sees a part of the sun"),
@@ -47,13 +48,13 @@ pub(super) fn results(report: &Report) -> String {
 fn result(index: usize, technique: &TechniqueEntry) -> Row {
     let number = |value: f64| Cell::number(&plain(value, 3), value);
     let percent = |share: f64| Cell::number(&format!("{:.3}", share * 100.0), share);
-    let or_none = |value: Option<Cell>| value.unwrap_or_else(Cell::empty);
     let mebibytes = |bytes: u64| number(bytes as f64 / f64::from(1 << 20));
     let error = &technique.error;
     Row {
         cells: vec![
             Cell::html(format!("<code>{}</code>", escape(&technique.name)), None),
             number(error.mean),
+            number(error.rms),
             number(error.p99),
             percent(error.wrong_share),
             or_none(error.penumbra.map(number)),
@@ -70,6 +71,10 @@ fn result(index: usize, technique: &TechniqueEntry) -> Row {
         data: vec![("technique".into(), index.to_string())],
         ..Row::default()
     }
+}
+
+fn or_none(value: Option<Cell>) -> Cell {
+    value.unwrap_or_else(Cell::empty)
 }
 
 /// Where the time goes.
@@ -124,7 +129,10 @@ pub(super) fn sets(report: &Report) -> String {
         Column::words("engine", "What computed the times"),
         Column::numbers("bake", "s", "Without ambient light"),
         Column::numbers("files", "", "Files of times, without the scene"),
+        Column::numbers("tracks", "s", "To find them, on top"),
+        Column::numbers("files of tracks", "", "In place of those of times"),
     ];
+    let size = |bytes: u64| Cell::number(&with_unit(bytes as f64, "bytes"), bytes as f64);
     let row = |set: &SetEntry| {
         Row::of(vec![
             Cell::number(&set.lanes.to_string(), set.lanes as f64),
@@ -133,7 +141,9 @@ pub(super) fn sets(report: &Report) -> String {
             Cell::number(&plain(set.texels_per_metre, 3), set.texels_per_metre),
             Cell::text(&set.engine),
             Cell::number(&plain(set.bake_s, 3), set.bake_s),
-            Cell::number(&with_unit(set.disk_bytes as f64, "bytes"), set.disk_bytes as f64),
+            size(set.disk_bytes),
+            or_none(set.tracks.map(|tracks| Cell::number(&plain(tracks.bake_s, 3), tracks.bake_s))),
+            or_none(set.tracks.map(|tracks| size(tracks.disk_bytes))),
         ])
     };
     let table = Table { caption: String::new(), columns, rows: report.scene.sets.iter().map(row).collect() };

@@ -11,7 +11,7 @@ impl Report {
         let name = self.techniques.iter().map(|technique| technique.name.len()).max().unwrap_or(0).max(9);
         let mut text = format!(
             "{} against {}, {} of {}x{}, on {}\n\n\
-             {:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
+             {:name$}  {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>11} {:>10} {:>10}\n",
             self.scene.name,
             self.reference.name,
             counted((self.cameras.len() * self.times.len()) as u64, "frame"),
@@ -20,6 +20,7 @@ impl Report {
             self.drawn_by(),
             "technique",
             "mean",
+            "rms",
             "p99",
             "wrong",
             "leak",
@@ -32,9 +33,10 @@ impl Report {
         for technique in &self.techniques {
             let error = &technique.error;
             text += &format!(
-                "{:name$}  {:>8.5} {:>8.4} {:>6.2} % {:>8.5} {:>8.5} {:>8.5} {:>11} {:>10} {:>10}\n",
+                "{:name$}  {:>8.5} {:>8.5} {:>8.4} {:>6.2} % {:>8.5} {:>8.5} {:>8.5} {:>11} {:>10} {:>10}\n",
                 technique.name,
                 error.mean,
+                error.rms,
                 error.p99,
                 error.wrong_share * 100.0,
                 error.false_light.unwrap_or(0.0),

@@ -2,12 +2,6 @@
 // nearest edge in widths of the light, counted from the deepest shade, and the share that this distance alone would
 // mean. Twin of bake/src/maps/evaluate.rs, where it is explained: same names, same order.
 
-const SHARP_REACH: f32 = 16.0;
-
-fn ramp(distance: f32) -> f32 {
-    return clamp(0.5 + distance, 0.0, 1.0);
-}
-
 fn edge_sample(
     rises: texture_2d_array<u32>,
     falls: texture_2d_array<u32>,
@@ -33,10 +27,5 @@ fn edge_sample(
         let inside = min(after_rise, before_fall);
         distance = max(distance, max(max(inside.x, inside.y), max(inside.z, inside.w)));
     }
-    let distance_widths = min(distance, reach) / width_codes;
-    return vec3<f32>(min(lit_codes / width_codes, 1.0), distance_widths + SHARP_REACH, ramp(distance_widths));
-}
-
-fn sharpened(blended: vec3<f32>) -> f32 {
-    return clamp(blended.x + ramp(blended.y - SHARP_REACH) - blended.z, 0.0, 1.0);
+    return edge_sample_of(min(lit_codes / width_codes, 1.0), min(distance, reach) / width_codes);
 }

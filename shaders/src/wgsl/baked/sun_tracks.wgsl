@@ -8,7 +8,9 @@
 @group(1) @binding(10) var shade_map: texture_2d_array<u32>;
 
 const SPAN_CODES: f32 = 65535.0;
-// More than any track's number.
+// Numbers from here on are of merged shade, and no track's.
+const FIRST_MERGED: u32 = 65284u;
+// More than any number.
 const NO_TRACK: u32 = 65536u;
 // Visibility that is left by rounding, and is none.
 const ROUNDING: f32 = 1e-5;
@@ -16,7 +18,10 @@ const ROUNDING: f32 = 1e-5;
 // The sun's width in eight parts, and how much of each is hidden. Codes are counted from where they begin: far from it,
 // codes are as coarse as f32.
 struct Parts {
+    // Of a part.
     width: f32,
+    // Where the first begins, in codes.
+    start: f32,
     first: vec4<f32>,
     last: vec4<f32>,
 }
@@ -61,24 +66,67 @@ fn list_of(texel: vec2<i32>) -> vec2<u32> {
     return vec2<u32>(list >> 6u, (list >> 6u) + (list & 63u));
 }
 
-fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
-    let width_codes = max(frame.width_t * SPAN_CODES, 1.0);
-    let window_start = frame.t * SPAN_CODES - 0.5 * width_codes;
-    let part = width_codes / 8.0;
-    var parts = Parts(part, vec4<f32>(0.0), vec4<f32>(0.0));
-    let sum = dot(weights, vec4<f32>(1.0));
+// What the sharp filter blends of a texel with this list of merged shade.
+fn merged_sample(list: vec2<u32>, parts: Parts) -> vec3<f32> {
+    let width = 8.0 * parts.width;
+    let middle = 0.5 * width;
+    let reach = SHARP_REACH * width;
     // There is no sun before and after the path.
-    hide(&parts, vec2<f32>(0.0, -window_start), sum);
-    hide(&parts, vec2<f32>(SPAN_CODES - window_start, width_codes), sum);
+    var hidden = max(-parts.start, 0.0) + max(parts.start + width - SPAN_CODES, 0.0);
+    var depth = -reach;
+    for (var span = list.x; span < list.y; span++) {
+        let codes = shade_of(span);
+        let shade = codes - parts.start;
+        hidden += max(min(shade.y, width) - max(shade.x, 0.0), 0.0);
+        let after_start = select(middle - shade.x, reach, codes.x == 0.0);
+        let before_end = select(shade.y - middle, reach, codes.y == SPAN_CODES);
+        depth = max(depth, min(after_start, before_end));
+    }
+    return edge_sample_of(max(1.0 - hidden / width, 0.0), -min(depth, reach) / width);
+}
+
+fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
+    let width = max(frame.width_t * SPAN_CODES, 1.0);
+    var parts = Parts(width / 8.0, frame.t * SPAN_CODES - 0.5 * width, vec4<f32>(0.0), vec4<f32>(0.0));
     var lists = array<vec2<u32>, 4>();
     var tracks = array<u32, 4>();
+    var without = vec4<f32>(0.0);
     for (var k = 0; k < 4; k++) {
         // What does not count is not read.
         if weights[k] > 0.0 {
             lists[k] = list_of(texel_of(at, k));
         }
         tracks[k] = next_track(lists[k]);
+        without[k] = select(0.0, weights[k], tracks[k] >= FIRST_MERGED);
     }
+    let sum = dot(weights, vec4<f32>(1.0));
+    let without_sum = dot(without, vec4<f32>(1.0));
+    var seen = 0.0;
+    if without_sum > 0.0 {
+        var blended = vec3<f32>(0.0);
+        for (var k = 0; k < 4; k++) {
+            if without[k] > 0.0 {
+                blended += without[k] / without_sum * merged_sample(lists[k], parts);
+            }
+        }
+        seen = without_sum * sharpened(blended);
+    }
+    if without_sum < sum {
+        seen += (sum - without_sum) / sum * seen_beside_tracks(lists, tracks, weights, parts);
+    }
+    return select(seen, 0.0, seen < ROUNDING);
+}
+
+// The share of the sun that is seen beside the union of blended tracks, times the sum of weights.
+fn seen_beside_tracks(all: array<vec2<u32>, 4>, first: array<u32, 4>, weights: vec4<f32>, window: Parts) -> f32 {
+    var lists = all;
+    var tracks = first;
+    var parts = window;
+    let sum = dot(weights, vec4<f32>(1.0));
+    let width = 8.0 * parts.width;
+    // There is no sun before and after the path.
+    hide(&parts, vec2<f32>(0.0, -parts.start), sum);
+    hide(&parts, vec2<f32>(SPAN_CODES - parts.start, width), sum);
     loop {
         let track = min(min(tracks[0], tracks[1]), min(tracks[2], tracks[3]));
         if track == NO_TRACK {
@@ -94,12 +142,11 @@ fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
                 tracks[k] = next_track(lists[k]);
             }
         }
-        hide(&parts, shade / weight - window_start, weight);
+        hide(&parts, shade / weight - parts.start, weight);
     }
-    let open = max(vec4<f32>(sum * part) - parts.first, vec4<f32>(0.0))
-        + max(vec4<f32>(sum * part) - parts.last, vec4<f32>(0.0));
-    let seen = dot(open, vec4<f32>(1.0)) / width_codes;
-    return select(seen, 0.0, seen < ROUNDING);
+    let whole = vec4<f32>(sum * parts.width);
+    let open = max(whole - parts.first, vec4<f32>(0.0)) + max(whole - parts.last, vec4<f32>(0.0));
+    return dot(open, vec4<f32>(1.0)) / width;
 }
 
 fn page_visibility(page_uv: vec2<f32>) -> f32 {
