@@ -1,9 +1,10 @@
 //! Shadows that are narrower than texels, close by: as texels show them, as tracks do, and as rays do.
 //!
 //!     cargo run --release --bin sunbake -- bake assets/gas_station.glb -o SET --only intervals --tracks OPTIONS
-//!     cargo run --release --example track_sheet -- SET SHEET.png
+//!     cargo run --release --example track_sheet -- SET SHEET.png [OBJECT]
 //!
-//! SET is our own scene. The picket fence is seen at five times of its day, other narrow things at one each.
+//! SET is our own scene. The picket fence is seen at five times of its day, other narrow things at one each; given an
+//! OBJECT of these, it alone is drawn.
 
 mod common;
 
@@ -40,7 +41,7 @@ const LOOKS: [Look; 6] = [
 
 fn main() -> Result<(), Anything> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let [set, sheet] = args.as_slice() else { return Err("give a set and a file to write".into()) };
+    let [set, sheet, object @ ..] = args.as_slice() else { return Err("give a set and a file to write".into()) };
     let stage = Stage::read(Path::new(set))?;
     let filters = [("filtered", Filter::Bilinear), ("tracks", Filter::Tracks)];
     let mut table = PictureTable {
@@ -55,7 +56,8 @@ fn main() -> Result<(), Anything> {
         legend: (["0".into(), "1".into()], "error of visibility: filtered above, tracks below".into()),
         legend_color: |share| heat(srgb_from_linear(share)),
     };
-    for (name, eye, target, times) in LOOKS {
+    let is_asked = |look: &Look| object.first().is_none_or(|object| object == look.0);
+    for (name, eye, target, times) in LOOKS.into_iter().filter(is_asked) {
         let Some(foot_m) = foot(&stage, name) else { return Err(format!("the scene has no {name}").into()) };
         let [eye, target] = [eye, target].map(|from_foot| foot_m + DVec3::from(from_foot));
         let camera = Camera::look_at(eye, target, FOV_RAD).ok_or("a camera that looks nowhere")?;

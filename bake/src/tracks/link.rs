@@ -94,7 +94,7 @@ pub fn number_tracks(found: &FoundSpans, page: &Linked) -> PageTracks {
 }
 
 /// Pairs of spans of two texels, by index, that are the same occluder's and follow each other.
-fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 16]> {
+pub(super) fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 16]> {
     let mut pairs = SmallVec::new();
     let (mut a, mut b) = (0, 0);
     while a < some.len() && b < others.len() {

@@ -9,13 +9,15 @@
 //! for which the times are no better, around the texel as a whole, are left to merged shade, and so are the cheapest
 //! losses where a texel has more spans than are stored, or the page more than it has bytes for. Merged shade is what
 //! is dark and no kept span hides, and a little more beside these. Triangles with alpha masks are always left to it.
+//! At last the texel as a whole is foretold from its neighbours' lists and by the sharp filter; where these are no
+//! better, around it as a whole, it has no tracks after all.
 //!
 //! Where occluders abut, one texel may be dark for one of them and the next for the other, and each of the two tracks
 //! ends before a point between. That would be light in deep shade. So a texel that is dark for long together with all
 //! texels around it says so in a span of its own ([`DEEP`]): the times of four such spans are dark for all four texels,
 //! and so are times between them.
 
-use super::link::{Linked, aligned};
+use super::link::{Linked, aligned, matches};
 use super::{
     DEEP, FoundSpan, FoundSpans, MERGED, MOST_PAGE_SPANS, MOST_SPANS, PageTracks, TrackCounts, find_spans,
     number_tracks,
@@ -39,6 +41,8 @@ const OVERLAP: f64 = 2.0;
 const LEAST_REST: usize = 8;
 /// The place of a texel that is not among those with tracks.
 const ABSENT: u32 = u32::MAX;
+/// Mean visibility by which tracks must foretell texels better than the sharp filter.
+const LEAST_TEXEL_GAIN: f64 = 0.003;
 /// Sun's widths for which a texel and all around it must be dark together, for the shade to be deep.
 const LEAST_DEPTH: f64 = 20.0;
 /// Share of the sun's width below which spans are too short to be seen.
@@ -79,7 +83,7 @@ pub fn page_tracks(
     let found = find_spans(finder, &texels, shade.point, shade.size, shade.walls, least_t, progress);
     let worth = Worth::new(shade, &linked, &texels, &found);
     let kept = Kept { shade, texels: &texels, found: &found, worth: &worth, least: worth.least(shade, &found) };
-    let (all, counts) = kept.with_merged();
+    let (all, counts) = kept.with_merged(&linked);
     ((counts.texels > 0).then(|| number_tracks(&all, &linked)), counts)
 }
 
@@ -174,14 +178,17 @@ struct Kept<'a> {
 
 impl Kept<'_> {
     /// The spans of all texels: those of parts that are worth it, and merged shade of the others.
-    fn with_merged(&self) -> (FoundSpans, TrackCounts) {
+    fn with_merged(&self, linked: &Linked) -> (FoundSpans, TrackCounts) {
         let lists: Vec<Option<(Vec<FoundSpan>, bool)>> =
             (0..self.texels.len()).into_par_iter().with_min_len(64).map(|index| self.of_texel(index)).collect();
+        let gains = self.gains_around(&self.gains(linked, &lists));
+        let is_kept = |gain: f64| self.shade.choice == TrackChoice::On || gain > LEAST_TEXEL_GAIN;
         let mut counts = TrackCounts::default();
         let mut all = FoundSpans::default();
-        let mut lists = self.texels.iter().zip(lists).peekable();
+        let mut lists = self.texels.iter().zip(lists).zip(gains).peekable();
         for texel in 0..self.shade.source.len() {
-            match lists.next_if(|(with, _)| **with as usize == texel).and_then(|(_, list)| list) {
+            let own = lists.next_if(|((with, _), _)| **with as usize == texel);
+            match own.filter(|(_, gain)| is_kept(*gain)).and_then(|((_, list), _)| list) {
                 Some((list, is_crowded)) => {
                     counts.texels += 1;
                     counts.crowded_texels += u64::from(is_crowded);
@@ -191,6 +198,41 @@ impl Kept<'_> {
             }
         }
         (all, counts)
+    }
+
+    /// For each texel, by how much it is foretold better by its neighbours' tracks than by the sharp filter: the
+    /// difference of mean errors over the path. 0 without such neighbours.
+    fn gains(&self, linked: &Linked, lists: &[Option<(Vec<FoundSpan>, bool)>]) -> Vec<f64> {
+        let place = places(self.texels, linked.source.len());
+        let reach_codes = reach_codes(self.shade);
+        let lit = |texel: usize| self.shade.lit.of_texel(self.shade.source[texel] as usize);
+        let list = |texel: usize| Some(lists[place(texel)?].as_ref()?.0.as_slice());
+        let gain = |&texel: &u32| {
+            let own = lit(texel as usize);
+            let (mut sum, mut count) = (0.0, 0.0f64);
+            for pair in neighbours(linked, texel as usize) {
+                if let (Some(before), Some(after)) = (list(pair[0]), list(pair[1])) {
+                    let sharp = difference(&between_texels(pair.map(lit), reach_codes), own);
+                    sum += f64::from(sharp) - foretold_error(own, [before, after]);
+                    count += f64::from(Bits::Sixteen.max_code());
+                }
+            }
+            sum / count.max(1.0)
+        };
+        self.texels.par_iter().with_min_len(64).map(gain).collect()
+    }
+
+    /// For each texel, the mean gain of those around it and of its own: whether tracks are kept must not change from
+    /// texel to texel.
+    fn gains_around(&self, gains: &[f64]) -> Vec<f64> {
+        let place = places(self.texels, self.shade.source.len());
+        let around = Around::new(self.shade.size, self.shade.walls);
+        let mean = |(index, &texel): (usize, &u32)| {
+            let near = around.texels(texel as usize).filter_map(&place).chain([index]);
+            let (sum, count) = near.fold((0.0, 0.0), |(sum, count), index| (sum + gains[index], count + 1.0));
+            sum / count
+        };
+        self.texels.par_iter().enumerate().map(mean).collect()
     }
 
     /// The spans of a texel, and whether there are more than are stored; none where no part is worth its bytes.
@@ -255,6 +297,36 @@ fn places(texels: &[u32], texel_count: usize) -> impl Fn(usize) -> Option<usize>
 /// Codes beyond which the sharp filter sees no edge.
 fn reach_codes(shade: &PageShade) -> i32 {
     (f64::from(SHARP_REACH) * shade.width_t * f64::from(Bits::Sixteen.max_code())) as i32
+}
+
+/// The codes for which a texel is foretold wrong by blending its neighbours' spans, for a sun without width. Given are
+/// its lit intervals.
+fn foretold_error(own: &[FoundSpan], [before, after]: [&[FoundSpan]; 2]) -> f64 {
+    // At a code, how much two sums grow: whether the texel is lit, and half shades of the blended times.
+    let mut steps: Vec<(u16, [i32; 2])> = vec![(Bits::Sixteen.max_code(), [0; 2])];
+    let mut add = |start: u16, end: u16, step: [i32; 2]| {
+        steps.push((start, step));
+        steps.push((end, step.map(|by| -by)));
+    };
+    own.iter().for_each(|span| add(span.start, span.end, [1, 0]));
+    let mut is_alone = [before, after].map(|spans| vec![true; spans.len()]);
+    for [i, j] in matches(before, after) {
+        let (a, b) = (before[i as usize], after[j as usize]);
+        (is_alone[0][i as usize], is_alone[1][j as usize]) = (false, false);
+        add(a.start.midpoint(b.start), a.end.midpoint(b.end), [0, 2]);
+    }
+    for (spans, is_alone) in [before, after].into_iter().zip(is_alone) {
+        let alone = spans.iter().zip(is_alone).filter(|(_, is_alone)| *is_alone);
+        alone.for_each(|(span, _)| add(span.start, span.end, [0, 1]));
+    }
+    steps.sort_unstable_by_key(|(code, _)| *code);
+    let (mut at, mut sums, mut halves) = (0, [0i32; 2], 0i64);
+    for (code, step) in steps {
+        halves += i64::from((2 * sums[0] - (2 - sums[1]).max(0)).abs()) * i64::from(code - at);
+        at = code;
+        sums.iter_mut().zip(step).for_each(|(sum, by)| *sum += by);
+    }
+    0.5 * halves as f64
 }
 
 /// The spans of each part of a texel.
@@ -472,8 +544,8 @@ fn fitted(shade: &[[u16; 2]], most: usize) -> Vec<FoundSpan> {
 mod tests {
     use super::*;
 
-    /// A post's shadow that moves from texel to texel by more than it is wide: blending has two pale ones where there is
-    /// one in the middle, and tracks have that.
+    /// A post's shadow that moves from texel to texel by more than it is wide: blending has two pale ones where there
+    /// is one in the middle, and tracks have that.
     #[test]
     fn tracks_foretell_a_narrow_shadow_and_not_what_only_one_texel_has() {
         let span = |start, end| [FoundSpan { part: 4, start, end }];

@@ -1,7 +1,6 @@
 //! The report that `sunplay compare` writes of every technique: its numbers, and its page. Needs a GPU adapter as well.
 
 use libtest_mimic::Trial;
-use serde_json::Value;
 use sunbake_tests::browser::probe;
 use sunbake_tests::compare_command::{assert_valid, compare, folder_with_set, report_in};
 use sunbake_tests::needs::{Need, trial};
@@ -17,7 +16,8 @@ fn a_report_holds_every_technique_and_works_in_a_browser() {
     let techniques = report["techniques"].as_array().unwrap();
     // Two counts of lanes, two depths, three filters; volumes; ten maps; truth of the sun's centre.
     assert_eq!(techniques.len(), 12 + 1 + 10 + 1, "{}", report["left_out"]);
-    assert_eq!(report["left_out"], Value::Array(Vec::new()));
+    let left_out = report["left_out"].as_array().unwrap();
+    assert!(left_out.len() == 1 && left_out[0]["name"] == "baked:tracks", "{left_out:?}");
     let frames = report["cameras"].as_array().unwrap().len() * report["times"].as_array().unwrap().len();
     assert_eq!(frames, 15);
     for technique in techniques {

@@ -68,10 +68,10 @@ pub struct CompareArgs {
     pub densities: DensityArgs,
     /// Exit with code 6 if any technique is above a limit: visibility=0.02,wrong=0.01.
     ///
-    /// Keys: visibility (mean error), rms (root of the mean square), p99, worst, wrong (share of pixels off by more than a half), penumbra, outside
-    /// (mean errors there), leak (mean light where truth has none), shade (mean shade where it has none), dissimilarity
-    /// (1 less the structural similarity), frame_ms, mib. The report is written all the same. Name what it is to hold
-    /// for with --techniques.
+    /// Keys: visibility (mean error), rms (root of the mean square), p99, worst, wrong (share of pixels off by more
+    /// than a half), penumbra, outside (mean errors there), leak (mean light where truth has none), shade (mean shade
+    /// where it has none), dissimilarity (1 less the structural similarity), frame_ms, mib. The report is written all
+    /// the same. Name what it is to hold for with --techniques.
     #[arg(long, value_name = "KEY=N", value_delimiter = ',')]
     pub fail_above: Vec<Limit>,
     #[command(flatten, next_help_heading = SUN_HEADING)]
