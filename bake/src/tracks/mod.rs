@@ -138,7 +138,7 @@ pub struct PageTracks {
 pub struct TrackCounts {
     /// Texels that have tracks.
     pub texels: u64,
-    /// Texels that have more spans than are stored, and so merged shade.
+    /// Texels of whose tracks some are merged, for they have more spans than are stored.
     pub crowded_texels: u64,
 }
 

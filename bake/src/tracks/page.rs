@@ -45,6 +45,8 @@ const ABSENT: u32 = u32::MAX;
 const LEAST_TEXEL_GAIN: f64 = 0.003;
 /// Sun's widths for which a texel and all around it must be dark together, for the shade to be deep.
 const LEAST_DEPTH: f64 = 20.0;
+/// Most spans of deep shade at a texel. A day's sun allows no more; a narrower light would.
+const MOST_DEEP: usize = 16;
 /// Share of the sun's width below which spans are too short to be seen.
 const LEAST_SPAN: f64 = 1.0 / 8.0;
 
@@ -258,6 +260,9 @@ impl Kept<'_> {
         while kept_count > 0 && spans(&wanted[..kept_count]) + rest.len().min(LEAST_REST) > room {
             kept_count -= 1;
             rest = rest_beside(kept_count);
+        }
+        if kept_count == 0 {
+            return None;
         }
         let is_crowded = kept_count < worth_it || spans(&wanted[..kept_count]) + rest.len() > room;
         let mut list: Vec<FoundSpan> =
@@ -509,7 +514,7 @@ fn deep_shade(shade: &PageShade, texel: usize) -> Vec<FoundSpan> {
     let near = std::iter::once(texel).chain(Around::new(shade.size, shade.walls).texels(texel));
     let lit = union(near.flat_map(|texel| shade.lit.of_texel(shade.source[texel] as usize)));
     let is_long = |[start, end]: &[u16; 2]| f64::from(end - start) >= least_codes;
-    let dark = between(&lit).filter(is_long);
+    let dark = between(&lit).filter(is_long).take(MOST_DEEP);
     dark.map(|[start, end]| FoundSpan { part: DEEP, start, end }).collect()
 }
 

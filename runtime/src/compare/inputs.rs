@@ -115,6 +115,9 @@ impl ComparisonInputs {
                 techniques.retain(|one| lanes_of(one).is_none_or(|lanes| lanes == 1));
                 left_out.push(left("baked:lanes3", NO_DISC));
             }
+            if plays_tracks(&settings.against) {
+                return Err(CompareError::ReferenceNotInSet(settings.against.to_string()));
+            }
             if wants_tracks {
                 wants_tracks = false;
                 techniques.retain(|one| !plays_tracks(one));
