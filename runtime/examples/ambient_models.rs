@@ -13,7 +13,7 @@ use std::path::Path;
 use std::time::Instant;
 use sunbake::maps::{Bits, GpuTexel, PageMaps};
 use sunbake::sun::clock_text;
-use sunbake_runtime::light::{LUMINANCE, codes_from_display, display_from_light};
+use sunbake_runtime::light::{LUMINANCE, displayed};
 use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique};
 use sunbake_runtime::texture::srgb_from_linear;
@@ -65,12 +65,12 @@ fn draw(set: &Path, model: AmbientModel, t: f64) -> Result<Column, Anything> {
 
 /// Bytes of ambient light for each texel.
 fn ambient_bytes(page: &PageMaps, bits: Bits) -> u64 {
-    GpuTexel { layers: 0, ..page.gpu_texel(bits) }.bytes()
+    GpuTexel { layers: 0, walls: false, ..page.gpu_texel(bits) }.bytes()
 }
 
 fn table(columns: &[Column], clock: &str) -> PictureTable {
-    let sky = columns.iter().map(|column| displayed(&column.sky)).collect();
-    let both = columns.iter().map(|column| displayed(&column.both)).collect();
+    let sky = columns.iter().map(|column| displayed(&column.sky, SUPERSAMPLE)).collect();
+    let both = columns.iter().map(|column| displayed(&column.both, SUPERSAMPLE)).collect();
     let apart = |column: &Column| {
         let pairs = column.sky.pixels.iter().zip(&columns[0].sky.pixels);
         let pixels = pairs.map(|(a, b)| (*a - *b).dot(LUMINANCE).abs().min(1.0)).collect();
@@ -92,11 +92,4 @@ fn table(columns: &[Column], clock: &str) -> PictureTable {
         legend: (["0".into(), "1".into()], "luminance of the sky alone, against the normal alone".into()),
         legend_color: |share| heat(srgb_from_linear(share)),
     }
-}
-
-/// sRGB codes of a picture in linear light.
-fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
-    let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
-    let reduced = display.reduced(SUPERSAMPLE);
-    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
 }

@@ -15,12 +15,12 @@ use sunbake::scene::{LoadLimits, load};
 use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake_runtime::compare::{mean, visibility_difference};
 use sunbake_runtime::gpu::Gpu;
-use sunbake_runtime::light::{codes_from_display, display_from_light};
+use sunbake_runtime::light::displayed;
 use sunbake_runtime::shadow_maps::{MapSettings, Variant};
 use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{ShadowMaps, Technique, Truth};
 use sunbake_runtime::texture::srgb_from_linear;
-use sunbake_runtime::{Camera, Moment, Raster, Shot, Stage, View};
+use sunbake_runtime::{Camera, Moment, Shot, Stage, View};
 
 /// Size of each picture.
 const SIZE: [u32; 2] = [330, 220];
@@ -51,7 +51,7 @@ fn main() -> Result<(), Anything> {
     let camera = camera.unwrap_or_else(|| Camera::default_of(&stage, aspect));
     let shot = Shot::new(&stage, View::new(&camera, SIZE, &stage.scene));
     let truths = [Truth::Hard, Truth::Soft { rays: TRUTH_RAYS }].map(|mut truth| -> Result<_, Anything> {
-        Ok((truth.visibility(&shot, &moment)?, displayed(&truth.color(&shot, &moment)?)))
+        Ok((truth.visibility(&shot, &moment)?, displayed(&truth.color(&shot, &moment)?, 1)))
     });
     let [hard, soft] = truths;
     let (hard, soft) = (hard?, soft?);
@@ -75,7 +75,7 @@ fn main() -> Result<(), Anything> {
         let error = mean(&difference);
         let bytes = maps.bytes() as f64 / f64::from(1 << 20);
         println!("{:16} mean error {error:.4}, {bytes:.1} MiB", variant.to_string());
-        let pictures = [displayed(&maps.color(&shot, &moment)?), truth_picture.clone(), heat_map(&difference)];
+        let pictures = [displayed(&maps.color(&shot, &moment)?, 1), truth_picture.clone(), heat_map(&difference)];
         table.rows.iter_mut().zip(pictures).for_each(|((_, row), picture)| row.push(picture));
         table.heads.push(variant.to_string());
         table.feet.push(format!("{error:.4}, {bytes:.1} MiB"));
@@ -105,10 +105,4 @@ fn at(path: Option<&SunPath>, clock: &str) -> Result<f64, Anything> {
     let times = (0..=10_000).map(|i| f64::from(i) / 10_000.0);
     let off = |t: &f64| path.and_then(|path| path.clock_min(*t)).map_or(f64::INFINITY, |min| (min - wanted_min).abs());
     times.min_by(|a, b| off(a).total_cmp(&off(b))).ok_or_else(|| "there is no such time".into())
-}
-
-/// sRGB codes of a picture in linear light.
-fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
-    let codes = light.pixels.iter().map(|&light| codes_from_display(display_from_light(light)));
-    Raster { size: light.size, pixels: codes.collect() }
 }

@@ -11,12 +11,13 @@ mod common;
 use common::{Anything, write};
 use glam::DVec3;
 use std::path::Path;
+use sunbake::sun::clock_text;
 use sunbake_runtime::compare::{mean, visibility_difference};
-use sunbake_runtime::light::{codes_from_display, display_from_light};
+use sunbake_runtime::light::displayed;
 use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique, Truth};
 use sunbake_runtime::texture::srgb_from_linear;
-use sunbake_runtime::{Camera, Filter, Raster, Shot, Stage, View};
+use sunbake_runtime::{Camera, Filter, Shot, Stage, View};
 
 /// Size of each picture.
 const SIZE: [u32; 2] = [300, 200];
@@ -70,17 +71,13 @@ fn main() -> Result<(), Anything> {
             let mut differences = Vec::new();
             for (_, filter) in filters {
                 let mut baked = BakedCpu::new(&stage, filter);
-                pictures.push(displayed(&baked.color(&shot, &moment)?));
+                pictures.push(displayed(&baked.color(&shot, &moment)?, 1));
                 differences.push(visibility_difference(&baked.visibility(&shot, &moment)?, &seen));
             }
-            pictures.push(displayed(&truth.color(&shot, &moment)?));
+            pictures.push(displayed(&truth.color(&shot, &moment)?, 1));
             pictures.extend(differences.iter().map(heat_map));
             table.rows.iter_mut().zip(pictures).for_each(|((_, row), picture)| row.push(picture));
-            let clock = stage
-                .path
-                .as_ref()
-                .and_then(|path| path.clock_min(t))
-                .map_or(String::new(), |min| format!("{:02}:{:02}", min as u32 / 60, min as u32 % 60));
+            let clock = stage.path.as_ref().and_then(|path| path.clock_min(t)).map(clock_text).unwrap_or_default();
             let errors = differences.iter().map(|difference| format!("{:.3}", mean(difference)));
             table.feet.push(errors.collect::<Vec<_>>().join("  "));
             table.heads.push(format!("{name}, {clock}"));
@@ -100,10 +97,4 @@ fn foot(stage: &Stage, name: &str) -> Option<DVec3> {
     let low = corners().fold(glam::Vec3::INFINITY, |a, b| a.min(*b)).as_dvec3();
     let high = corners().fold(glam::Vec3::NEG_INFINITY, |a, b| a.max(*b)).as_dvec3();
     Some(((low + high) * 0.5).with_y(low.y))
-}
-
-/// sRGB codes of a picture in linear light.
-fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
-    let codes = light.pixels.iter().map(|&light| codes_from_display(display_from_light(light)));
-    Raster { size: light.size, pixels: codes.collect() }
 }

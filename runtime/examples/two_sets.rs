@@ -14,7 +14,7 @@ use std::path::Path;
 use sunbake::disk::read::read;
 use sunbake::sun::clock_text;
 use sunbake_runtime::compare::{Agreement, edges, mean, visibility_difference};
-use sunbake_runtime::light::{codes_from_display, display_from_light};
+use sunbake_runtime::light::displayed;
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{BakedCpu, Technique, Truth};
@@ -88,7 +88,7 @@ fn draw(sets: &[Set; 2], view: &View, t: f64) -> Result<Column, Anything> {
         beyond[0],
         beyond[1]
     );
-    let lit = [0, 1].map(|i| displayed(&lit_picture(&shots[i], &moment, &seen[i], None)));
+    let lit = [0, 1].map(|i| displayed(&lit_picture(&shots[i], &moment, &seen[i], None), SUPERSAMPLE));
     let [first, other] = lit;
     Ok(Column { clock, pictures: [first, other, heat_map(&difference.reduced(SUPERSAMPLE))], errors })
 }
@@ -111,11 +111,4 @@ fn table(sets: &[Set; 2], columns: &[Column]) -> PictureTable {
         legend: (["0".into(), "1".into()], "difference of visibility; 0 is none, 1 is sun for shade".into()),
         legend_color: |share| heat(srgb_from_linear(share)),
     }
-}
-
-/// sRGB codes of a picture in linear light.
-fn displayed(light: &Raster<glam::Vec3>) -> Raster<[u8; 3]> {
-    let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
-    let reduced = display.reduced(SUPERSAMPLE);
-    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
 }

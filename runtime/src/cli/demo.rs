@@ -2,7 +2,7 @@
 
 use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, OutputChoice, TechniqueChoice};
 use super::draw::{open_gpu, technique, view};
-use super::files::{displayed, make_folder, write_rgb};
+use super::files::{make_folder, write_rgb};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -12,7 +12,7 @@ use sunbake::settings::{BakeSettings, SunRequest};
 use sunbake::sun::{Date, DayRequest};
 use sunbake_runtime::camera::CameraChoice;
 use sunbake_runtime::compare::{mean, visibility_difference};
-use sunbake_runtime::light::clock_label;
+use sunbake_runtime::light::{clock_label, displayed};
 use sunbake_runtime::shade::lit_picture;
 use sunbake_runtime::sheet::{PictureTable, heat, heat_map};
 use sunbake_runtime::technique::{Technique, Truth};

@@ -4,7 +4,7 @@ use glam::Vec3;
 use std::path::Path;
 use sunbake::console::Failure;
 use sunbake_runtime::Raster;
-use sunbake_runtime::light::{codes_from_display, display_from_light};
+use sunbake_runtime::light::displayed;
 
 /// Kinds of file, by their ending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,14 +31,6 @@ pub fn in_words(samples: u32) -> String {
         1 => "1 sample a pixel".into(),
         n => format!("{} samples a pixel", n * n),
     }
-}
-
-/// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone
-/// curve, so that one bright sample does not outshine a pixel.
-pub fn displayed(light: &Raster<Vec3>, supersample: u32) -> Raster<[u8; 3]> {
-    let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
-    let reduced = display.reduced(supersample);
-    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
 }
 
 /// Writes a picture in colour.

@@ -2,12 +2,12 @@
 
 use super::args::FramesArgs;
 use super::draw::{Picture, draw, explain, kind_of, moment, open_gpu, stage, technique, view};
-use super::files::{displayed, displayed_visibility, in_words, make_folder, write_animation, write_rgb};
+use super::files::{displayed_visibility, in_words, make_folder, write_animation, write_rgb};
 use serde_json::json;
 use std::time::Instant;
 use sunbake::console::{Failure, ProgressLine, print, print_json, set_threads};
 use sunbake::words::counted;
-use sunbake_runtime::light::clock_label;
+use sunbake_runtime::light::{clock_label, displayed};
 use sunbake_runtime::sheet::{contact_sheet, thumbnail};
 use sunbake_runtime::{Raster, Shot};
 

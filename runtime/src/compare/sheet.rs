@@ -4,7 +4,7 @@ use super::comparison::{Outcome, lit_picture_of};
 use super::report::TechniqueEntry;
 use super::visibility_difference;
 use crate::image::Raster;
-use crate::light::{codes_from_display, display_from_light};
+use crate::light::displayed;
 use crate::sheet::{PictureTable, heat, heat_map};
 use crate::texture::srgb_from_linear;
 
@@ -43,9 +43,7 @@ pub fn sheet(title: &[String], outcome: &Outcome, pair: BestPair, clocks: &[Stri
     let columns = columns(outcome, outcome.frames.len() / clocks.len().max(1));
     let small = |picture: Raster<[u8; 3]>| crate::sheet::thumbnail(&picture, PICTURE_WIDTH_PX);
     let lit = |technique: usize, frame: usize| {
-        let light = lit_picture_of(&outcome.frames[frame], &visibility(outcome, technique, frame));
-        let shown = light.pixels.iter().map(|&light| codes_from_display(display_from_light(light)));
-        small(Raster { size: light.size, pixels: shown.collect() })
+        small(displayed(&lit_picture_of(&outcome.frames[frame], &visibility(outcome, technique, frame)), 1))
     };
     let error = |technique: usize, frame: usize| {
         let seen = visibility(outcome, technique, frame);

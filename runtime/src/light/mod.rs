@@ -20,7 +20,7 @@ mod tone;
 pub use disc::SunDisc;
 pub use lamp::{LampMoment, WITHOUT_END};
 pub use time_choice::{TimeChoice, TimeError, clock_label};
-pub use tone::{codes_from_display, display_from_light};
+pub use tone::{codes_from_display, display_from_light, displayed};
 
 use crate::camera::View;
 use glam::Vec3;

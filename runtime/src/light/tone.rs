@@ -5,6 +5,7 @@
 //! channel by channel.
 
 use super::LUMINANCE;
+use crate::image::Raster;
 use crate::texture::srgb_from_linear;
 use glam::Vec3;
 
@@ -23,6 +24,14 @@ pub fn display_from_light(light: Vec3) -> Vec3 {
 /// sRGB codes for display-linear RGB.
 pub fn codes_from_display(display: Vec3) -> [u8; 3] {
     display.to_array().map(|x| (srgb_from_linear(x.clamp(0.0, 1.0)) * 255.0).round() as u8)
+}
+
+/// sRGB codes of a picture in linear light: the mean of `supersample` squared samples a pixel, taken after the tone
+/// curve, so that one bright sample does not outshine a pixel.
+pub fn displayed(light: &Raster<Vec3>, supersample: u32) -> Raster<[u8; 3]> {
+    let display = Raster { size: light.size, pixels: light.pixels.iter().map(|&l| display_from_light(l)).collect() };
+    let reduced = display.reduced(supersample);
+    Raster { size: reduced.size, pixels: reduced.pixels.iter().map(|&d| codes_from_display(d)).collect() }
 }
 
 #[cfg(test)]
