@@ -41,6 +41,18 @@ impl Linked<'_> {
         })
     }
 
+    /// The texels left and right of a texel, and those above and below it, where the ways to both are open.
+    pub fn neighbours(&self, texel: usize) -> impl Iterator<Item = [usize; 2]> {
+        let (width, count) = (self.size.width as usize, self.source.len());
+        let pair = |step: usize, way: usize| {
+            let is_inside = step != 1 || (1..width - 1).contains(&(texel % width));
+            let (before, after) = (texel.checked_sub(step)?, texel + step);
+            let is_open = is_inside && after < count && (self.is_open)(before, way) && (self.is_open)(texel, way);
+            is_open.then_some([before, after])
+        };
+        [pair(1, 0), pair(width, 1)].into_iter().flatten()
+    }
+
     /// The four texels of each quad, each by the one whose spans it has.
     fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
         let (width, height) = (self.width(), self.size.height as usize);
@@ -112,7 +124,7 @@ pub(super) fn matches(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u3
 }
 
 /// Pairs in ascending order: all of the shorter list, with the least sum of differences in time.
-pub(super) fn aligned(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 8]> {
+fn aligned(some: &[FoundSpan], others: &[FoundSpan]) -> SmallVec<[[u32; 2]; 8]> {
     if some.len() > others.len() {
         return aligned(others, some).into_iter().map(|[a, b]| [b, a]).collect();
     }

@@ -17,6 +17,7 @@
 //! * [`page`]: which texels of a page have tracks. Where shade hardly moves from texel to texel, blending what texels
 //!   see is as good, so the others keep their merged shade.
 //! * [`find`]: the spans of a texel. What matters is a minimal cover of its own shade and of its eight neighbours'.
+//! * [`foretell`] and [`worth`]: which of them are kept. [`times`]: lists of times.
 //! * [`link`]: the numbers of tracks.
 //! * [`evaluate`]: visibility at a point between texels.
 //!
@@ -24,8 +25,11 @@
 
 mod evaluate;
 mod find;
+mod foretell;
 mod link;
 mod page;
+mod times;
+mod worth;
 
 pub use evaluate::tracked_visibility;
 pub use find::find_spans;
@@ -83,6 +87,16 @@ impl FoundSpan {
         let [start, end] = shade.map(|t| Bits::Sixteen.encode(t));
         Self { part, start, end }
     }
+
+    /// When it starts and ends.
+    fn times(&self) -> [u16; 2] {
+        [self.start, self.end]
+    }
+}
+
+/// The spans of each part of a texel.
+fn parts(spans: &[FoundSpan]) -> impl Iterator<Item = &[FoundSpan]> {
+    spans.chunk_by(|a, b| a.part == b.part)
 }
 
 /// Spans of texels, each texel's by ascending part and time.
