@@ -128,7 +128,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             let least_t = path.width_t(0.5) / 8.0;
             let texels: Vec<u32> = (0..points.len() as u32).filter(|&texel| points[texel as usize].is_some()).collect();
             let point = |texel: u32| points[texel as usize].unwrap_or_else(|| unreachable!("it has a point"));
-            let found = find_spans(&finder, &texels, &point, size, None, least_t, &Silent);
+            let found = find_spans(
+                &finder,
+                &texels,
+                &point,
+                &|session, _, point| session.find(point),
+                size,
+                None,
+                least_t,
+                &Silent,
+            );
             let found_seconds = started.elapsed().as_secs_f64();
             let tracks: PageTracks = number_tracks(&found, &Linked { size, source: &texels, is_open: &|_, _| true });
             let seconds = started.elapsed().as_secs_f64();

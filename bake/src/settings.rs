@@ -4,7 +4,7 @@ use crate::ambient::AmbientSettings;
 use crate::atlas::Density;
 use crate::lamp::LampPath;
 use crate::maps::Bits;
-use crate::scene::ObjectWishes;
+use crate::scene::{Components, ObjectWishes};
 use crate::sun::{DayRequest, SunPath};
 use crate::trace::Tracer;
 use crate::visibility::{BisectEngine, Engine, ExactEngine, LampEngine, LampRays, RayEngine};
@@ -179,10 +179,19 @@ impl EngineChoice {
         !matches!(self, Self::Bisect(_))
     }
 
-    /// The engine, for the lanes of a sun.
-    pub fn engine<'a>(self, tracer: &'a Tracer, lanes: &[SunPath], edge_seconds: f64) -> Box<dyn Engine + 'a> {
+    /// The engine, for the lanes of a sun. Given the scene's `parts`, the exact one notes which of them hide it.
+    pub fn engine<'a>(
+        self,
+        tracer: &'a Tracer,
+        lanes: &[SunPath],
+        edge_seconds: f64,
+        parts: Option<&Components>,
+    ) -> Box<dyn Engine + 'a> {
         match self {
-            Self::Exact => Box::new(ExactEngine::new(tracer, lanes)),
+            Self::Exact => {
+                let engine = ExactEngine::new(tracer, lanes);
+                Box::new(parts.into_iter().fold(engine, ExactEngine::noting))
+            }
             Self::Rays(count) => Box::new(RayEngine::new(tracer, lanes, count)),
             Self::Bisect(count) => Box::new(BisectEngine::new(tracer, lanes, count, edge_seconds)),
         }

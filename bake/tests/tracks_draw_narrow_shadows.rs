@@ -10,7 +10,7 @@ use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake::trace::{Direction, Tracer};
 use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
-use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
+use sunbake::visibility::{ExactEngine, IntervalTable, Intervals, OccluderFinder, lit_at, solve_visibility};
 use sunbake::{Bake, bake_scene};
 
 /// Texels a metre, and their number along an edge of the patch behind the fence.
@@ -89,7 +89,16 @@ impl Patch {
         let finder = OccluderFinder::new(&engine, &parts);
         let texels: Vec<u32> = (0..EDGE * EDGE).collect();
         let point = |i: u32| point(&here, place(f64::from(i % EDGE), f64::from(i / EDGE)));
-        let found = find_spans(&finder, &texels, &point, size(), None, path.width_t(0.5) / 8.0, &Silent);
+        let found = find_spans(
+            &finder,
+            &texels,
+            &point,
+            &|session, _, point| session.find(point),
+            size(),
+            None,
+            path.width_t(0.5) / 8.0,
+            &Silent,
+        );
         let tracks = number_tracks(&found, &Linked { size: size(), source: &texels, is_open: &|_, _| true });
         Self { here, path, tracks }
     }
@@ -132,7 +141,7 @@ fn each_part_alone_hides_what_it_hides_in_a_scene_without_the_others() {
         let only_engine = ExactEngine::new(&only.tracer, std::slice::from_ref(&path));
         for k in 0..60 {
             let at = place(f64::from(k % 10) * 2.03, f64::from(k / 10) * 3.7);
-            let alone = session.alone(&point(&here, at), part as u32);
+            let alone = session.alone(&point(&here, at), &[part as u32]).lit.swap_remove(0);
             let expected = lit_at(&only_engine, &point(&only, at)).swap_remove(0);
             // The scenes' coordinates are rounded about different centres.
             assert!(differ(&alone, &expected) < 1e-5, "part {part} at {at:?}: {alone:?} {expected:?}");
@@ -140,6 +149,28 @@ fn each_part_alone_hides_what_it_hides_in_a_scene_without_the_others() {
         }
     }
     assert!(shaded > 30, "only {shaded} answers hold a shadow");
+}
+
+#[test]
+fn a_bakes_own_query_notes_the_parts_that_hide_the_sun() {
+    let (here, path) = (fence(), path());
+    let parts = Components::new(&here.scene, &here.geometry);
+    let engine = ExactEngine::new(&here.tracer, std::slice::from_ref(&path)).noting(&parts);
+    let point = |k: usize| point(&here, place((k % 10) as f64 * 2.03, (k / 10) as f64 * 1.97));
+    let solved = solve_visibility(&engine, 100, point, |_| true).expect("nothing stops it");
+    let lit: Vec<Intervals> = solved.tables.iter().flat_map(IntervalTable::iter).collect();
+    let finder = OccluderFinder::new(&engine, &parts);
+    let mut session = finder.session();
+    let mut hidden = 0;
+    for (k, lit) in lit.iter().enumerate() {
+        let alone = session.alone(&point(k), solved.hiders.of_point(k));
+        let together = alone.lit.iter().fold(alone.facing.clone(), |lit, alone| lit.intersection(alone));
+        assert!(differ(&together, lit) < 1e-9, "point {k}: {together:?} {lit:?}");
+        hidden += usize::from(differ(&alone.facing, lit) > 0.01);
+    }
+    assert!(hidden > 30, "only {hidden} points are hidden from the sun");
+    let silent = ExactEngine::new(&here.tracer, std::slice::from_ref(&path));
+    assert!(solve_visibility(&silent, 100, point, |_| true).is_some_and(|solved| solved.hiders.is_empty()));
 }
 
 #[test]
@@ -154,8 +185,8 @@ fn all_parts_together_hide_what_the_engine_finds() {
         let (lit, found) = session.find(&point);
         let expected = lit_at(&engine, &point).swap_remove(0);
         assert!(differ(&lit, &expected) < 1e-12);
-        let together =
-            found.iter().fold(session.facing(&point), |lit, &part| lit.intersection(&session.alone(&point, part)));
+        let alone = session.alone(&point, &found);
+        let together = alone.lit.iter().fold(alone.facing.clone(), |lit, alone| lit.intersection(alone));
         assert!(differ(&together, &expected) < 1e-9, "{found:?}: {together:?} {expected:?}");
     }
 }

@@ -116,8 +116,8 @@ fn truth_at(stage: &Stage, points: &[(usize, [f64; 2])]) -> Vec<Vec<[f64; 2]>> {
         let (triangle, weights) = points[index];
         SurfacePoint::of_triangle(&stage.scene, &stage.geometry, triangle, weights)
     };
-    let (tables, _) = solve_visibility(&engine, points.len(), surface, |_| true).expect("nothing stops it");
-    tables.iter().flat_map(IntervalTable::iter).map(|lit| lit.as_slice().to_vec()).collect()
+    let solved = solve_visibility(&engine, points.len(), surface, |_| true).expect("nothing stops it");
+    solved.tables.iter().flat_map(IntervalTable::iter).map(|lit| lit.as_slice().to_vec()).collect()
 }
 
 struct Errors {

@@ -137,12 +137,11 @@ fn bake_prepared(
     // Before the long part: who sees that something is wrong can stop here.
     warnings.iter().for_each(|warning| progress.warn(warning));
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
-    let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds));
-    let duration_min = path.map_or(0.0, |p| p.duration_min);
-    // Tracks are read as shares of the sun's width.
     let track_path = path.filter(|_| plan.is_on(Effect::ShadowTracks));
-    let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
     let parts = track_path.map(|_| Components::new(scene, &geometry));
+    let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds, parts.as_ref()));
+    let duration_min = path.map_or(0.0, |p| p.duration_min);
+    let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
     let finder = track_engine.as_ref().zip(parts.as_ref()).map(|(engine, parts)| OccluderFinder::new(engine, parts));
     let tracks = finder.as_ref().zip(path).map(|(finder, path)| TrackJob {
         finder,

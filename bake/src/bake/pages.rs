@@ -16,7 +16,7 @@ use crate::scene::{Geometry, Scene};
 use crate::settings::BakeSettings;
 use crate::trace::Tracer;
 use crate::tracks::PageTracks;
-use crate::visibility::{self, Answers, BuriedPoints, IntervalTable, Intervals, Work, fill_buried};
+use crate::visibility::{self, Answers, BuriedPoints, IntervalTable, Intervals, Solved, fill_buried};
 use std::time::Instant;
 
 /// The texels of a page.
@@ -145,9 +145,9 @@ impl<'a> PageBaker<'a> {
         account: &mut LightAccount,
         texels: PageTexels,
     ) -> Result<(Vec<LaneMaps>, Option<PageTracks>), BakeError> {
-        let (tables, work) = self.solve_visibility(light, texels.samples, texels.order).ok_or(BakeError::Cancelled)?;
-        account.work = account.work + work;
-        Ok(self.encode(page, light, account, texels, &tables))
+        let solved = self.solve_visibility(light, texels.samples, texels.order).ok_or(BakeError::Cancelled)?;
+        account.work = account.work + solved.work;
+        Ok(self.encode(page, light, account, texels, &solved))
     }
 
     /// Lit intervals, in the given order of samples.
@@ -156,7 +156,7 @@ impl<'a> PageBaker<'a> {
         light: &LightJob,
         PageSamples { samples }: &PageSamples,
         order: &[u32],
-    ) -> Option<(Vec<IntervalTable>, Work)> {
+    ) -> Option<Solved> {
         self.progress.start(light.step, samples.len() as u64);
         let (scene, geometry, progress) = (self.scene, self.geometry, self.progress);
         timed(&mut self.stats.seconds.visibility, || {
@@ -192,7 +192,7 @@ impl<'a> PageBaker<'a> {
         light: &LightJob,
         account: &mut LightAccount,
         page_texels: PageTexels,
-        tables: &[IntervalTable],
+        solved: &Solved,
     ) -> (Vec<LaneMaps>, Option<PageTracks>) {
         let PageTexels { samples, order, gutter, walls } = page_texels;
         let PageSamples { samples: texels } = samples;
@@ -200,11 +200,11 @@ impl<'a> PageBaker<'a> {
         let started = Instant::now();
         let size = self.atlas.pages[page];
         let mut encoders = LaneEncoders::new(light, size.width as usize * size.height as usize, self.settings);
-        let answers = Answers { tables, lane_count: light.lanes.len() };
+        let answers = Answers { tables: &solved.tables, lane_count: light.lanes.len() };
         let filled = fill_buried(&self.buried, size, samples, order, walls, answers);
         account.filled_texels += filled.len() as u64;
-        let mut track_baker = light.tracks.map(|job| TrackBaker::new(job, size, page_texels));
-        let mut answers = tables.iter().flat_map(IntervalTable::iter);
+        let mut track_baker = light.tracks.map(|job| TrackBaker::new(job, size, page_texels, &solved.hiders));
+        let mut answers = solved.tables.iter().flat_map(IntervalTable::iter);
         for (place, sample) in order.iter().map(|&i| &texels[i as usize]).enumerate() {
             let own: Vec<Intervals> = answers.by_ref().take(light.lanes.len()).collect();
             let lists = filled.get(&place).unwrap_or(&own);

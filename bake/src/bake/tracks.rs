@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::scene::{Geometry, Scene};
 use crate::settings::TrackChoice;
 use crate::tracks::{FoundSpan, FoundSpans, MERGED, PageShade, PageTracks, TrackCounts, page_tracks};
-use crate::visibility::{Intervals, OccluderFinder};
+use crate::visibility::{Hiders, Intervals, OccluderFinder};
 
 /// How tracks are found.
 #[derive(Clone, Copy)]
@@ -24,6 +24,7 @@ pub(super) struct TrackBaker<'a> {
     job: TrackJob<'a>,
     size: PageSize,
     texels: PageTexels<'a>,
+    hiders: &'a Hiders,
     lit: FoundSpans,
     is_filled: Vec<bool>,
 }
@@ -32,8 +33,9 @@ pub(super) struct TrackBaker<'a> {
 const ABSENT: u32 = u32::MAX;
 
 impl<'a> TrackBaker<'a> {
-    pub fn new(job: TrackJob<'a>, size: PageSize, texels: PageTexels<'a>) -> Self {
-        Self { job, size, texels, lit: FoundSpans::default(), is_filled: Vec::new() }
+    /// `hiders` are in the order of the page's texels, or empty.
+    pub fn new(job: TrackJob<'a>, size: PageSize, texels: PageTexels<'a>, hiders: &'a Hiders) -> Self {
+        Self { job, size, texels, hiders, lit: FoundSpans::default(), is_filled: Vec::new() }
     }
 
     /// Texels of the page.
@@ -77,12 +79,14 @@ impl<'a> TrackBaker<'a> {
             let sample = texels.order[place[texel as usize] as usize];
             surface_point(scene, geometry, &samples[sample as usize])
         };
+        let hiders = |texel: u32| self.hiders.of_point(place[texel as usize] as usize).to_vec();
         let shade = PageShade {
             size: *size,
             source: &source,
             lit: &lit,
             has_point: &has_point,
             point: &point,
+            hiders: (!self.hiders.is_empty()).then_some(&hiders),
             walls: texels.walls,
             width_t: job.width_t,
             choice: job.choice,

@@ -133,7 +133,7 @@ impl SparseTexels {
 
     fn sun(&self, workload: &Workload, settings: &BakeSettings, budget: &Budget) -> Option<Vec<LaneMaps>> {
         let (lanes, paths) = workload.lanes(settings.lane_count);
-        let engine = settings.engine.engine(&workload.tracer, &paths, settings.edge_seconds);
+        let engine = settings.engine.engine(&workload.tracer, &paths, settings.edge_seconds, None);
         let points: Vec<SurfacePoint> = self.samples.iter().map(|sample| workload.point(sample)).collect();
         let (answers, _) = workload.solve_visibility(engine.as_ref(), &points, budget)?;
         let of_lane = |(k, &lane)| {

@@ -136,7 +136,7 @@ impl<'a> TexelSweeps<'a> {
 
     /// Measures an engine; `layer_cap` limits the bytes of its answers.
     pub fn engine(&mut self, choice: EngineChoice, layer_cap: usize, budget: &Budget) -> Option<SweepPoint> {
-        let engine = choice.engine(&self.workload.tracer, &[self.workload.path().clone()], 1.0);
+        let engine = choice.engine(&self.workload.tracer, &[self.workload.path().clone()], 1.0, None);
         let (found, seconds) = self.timed(|| self.workload.solve_visibility(engine.as_ref(), &self.points, budget))?;
         let which = match choice {
             EngineChoice::Rays(count) => Some((0, count)),

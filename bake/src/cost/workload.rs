@@ -158,9 +158,9 @@ impl Workload {
             budget.advance(count as u64);
             !budget.is_cancelled()
         };
-        let (tables, _) = self.with_cpu_share(|| solve_visibility(engine, points.len(), |i| points[i], on_progress))?;
+        let solved = self.with_cpu_share(|| solve_visibility(engine, points.len(), |i| points[i], on_progress))?;
         let seconds = started.elapsed().as_secs_f64();
-        Some((tables.iter().flat_map(|table| table.iter()).collect(), seconds))
+        Some((solved.tables.iter().flat_map(|table| table.iter()).collect(), seconds))
     }
 
     /// Ambient light of points, run by run, and the seconds it took. None if it was stopped.

@@ -4,8 +4,9 @@ use super::{FoundSpan, FoundSpans, OWN_PLANE};
 use crate::atlas::{Around, PageSize, SurfacePoint};
 use crate::intervals::Intervals;
 use crate::progress::{BakeStep, Progress};
-use crate::visibility::{OccluderFinder, OccluderSession};
+use crate::visibility::{Alone, OccluderFinder, OccluderSession};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 /// Texels that one session finds in a row.
 const RUN: usize = 256;
@@ -17,6 +18,9 @@ const ABSENT: u32 = u32::MAX;
 /// Shade by parts: each with its spans.
 type Shades = Vec<(u32, Intervals)>;
 
+/// Tells when a texel's point sees the sun, and which parts hide it at other times; there may be more than are needed.
+pub type FindHiders<'a> = dyn Fn(&mut OccluderSession, u32, &SurfacePoint) -> (Intervals, Vec<u32>) + Sync + 'a;
+
 /// Finds the spans of some texels of a page, in their order; each has a `point`. Spans shorter than `least_t`, in path
 /// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and
 /// of that of texels around it, if they are asked for as well and none of the page's `walls` parts them. Where
@@ -25,6 +29,7 @@ pub fn find_spans(
     finder: &OccluderFinder,
     texels: &[u32],
     point: &(dyn Fn(u32) -> SurfacePoint + Sync),
+    hiders: &FindHiders,
     size: PageSize,
     walls: Option<&[[u8; 2]]>,
     least_t: f64,
@@ -32,70 +37,73 @@ pub fn find_spans(
 ) -> FoundSpans {
     progress.start(BakeStep::Tracks, 2 * texels.len() as u64);
     let around = Around::new(size, walls);
-    let of_texels = |find: &(dyn Fn(&mut OccluderSession, usize, &SurfacePoint) -> Shades + Sync)| -> Vec<Shades> {
-        let of_run = |(run, some): (usize, &[u32])| {
-            if progress.is_cancelled() {
-                return vec![Shades::new(); some.len()];
-            }
-            progress.advance(some.len() as u64);
-            let mut session = finder.session();
-            let of_texel = |(i, &texel): (usize, &u32)| find(&mut session, run * RUN + i, &point(texel));
-            some.iter().enumerate().map(of_texel).collect::<Vec<_>>()
-        };
-        texels.par_chunks(RUN).enumerate().flat_map_iter(of_run).collect()
-    };
-    let covers = of_texels(&|session, _, point| cover(session, point, least_t));
+    let covers: Vec<Shades> = of_texels(finder, texels, progress, |session, index| {
+        let texel = texels[index];
+        let point = point(texel);
+        let (lit, parts) = hiders(session, texel, &point);
+        cover(session, &point, &lit, &parts, least_t)
+    });
     let mut place = vec![ABSENT; texels.iter().max().map_or(0, |&last| last as usize + 1)];
     texels.iter().zip(0..).for_each(|(&texel, index)| place[texel as usize] = index);
     let cover_of = |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| &covers[i as usize]);
-    let all = of_texels(&|session, index, point| {
+    let all: Vec<Vec<FoundSpan>> = of_texels(finder, texels, progress, |session, index| {
+        let point = &point(texels[index]);
+        let own = &covers[index];
         let others = around.texels(texels[index] as usize).filter_map(cover_of);
         let mut parts: Vec<u32> = others.flat_map(|cover| cover.iter().map(|shade| shade.0)).collect();
         parts.sort_unstable();
         parts.dedup();
-        let own = &covers[index];
-        let facing = session.facing(point);
+        parts.retain(|part| *part != OWN_PLANE && own.iter().all(|(own, _)| own != part));
         let mut shades: Shades = own.clone();
-        for part in parts.into_iter().filter(|part| *part != OWN_PLANE) {
-            if own.iter().all(|(own, _)| *own != part) {
-                shades.push((part, shade_of(session, point, &facing, part, least_t)));
-            }
+        if !parts.is_empty() {
+            shades.extend(shades_of(&session.alone(point, &parts), &parts, least_t));
         }
         shades.sort_by_key(|(part, _)| *part);
-        shades
+        let spans = |(part, shade): &(u32, Intervals)| {
+            shade.as_slice().iter().map(|&shade| FoundSpan::new(*part, shade)).collect::<SmallVec<[FoundSpan; 8]>>()
+        };
+        shades.iter().flat_map(spans).collect()
     });
     let mut found = FoundSpans::default();
-    for shades in all {
-        let spans =
-            shades.iter().flat_map(|(part, shade)| shade.as_slice().iter().map(|&shade| FoundSpan::new(*part, shade)));
-        found.push(spans);
-    }
+    all.into_iter().for_each(|spans| found.push(spans));
     found
 }
 
-/// When a part alone hides the sun from a point that faces it.
-fn shade_of(
-    session: &mut OccluderSession,
-    point: &SurfacePoint,
-    facing: &Intervals,
-    part: u32,
-    least_t: f64,
-) -> Intervals {
-    let shade = facing.without(&session.alone(point, part));
-    shade.longer_than(least_t)
+/// What `find` tells of each texel, by its index; nothing of the rest where `progress` is cancelled.
+fn of_texels<T: Default + Send>(
+    finder: &OccluderFinder,
+    texels: &[u32],
+    progress: &dyn Progress,
+    find: impl Fn(&mut OccluderSession, usize) -> T + Sync,
+) -> Vec<T> {
+    let of_run = |(run, some): (usize, &[u32])| {
+        let indices = run * RUN..run * RUN + some.len();
+        if progress.is_cancelled() {
+            return indices.map(|_| T::default()).collect::<Vec<_>>();
+        }
+        progress.advance(some.len() as u64);
+        let mut session = finder.session();
+        indices.map(|index| find(&mut session, index)).collect()
+    };
+    texels.par_chunks(RUN).enumerate().flat_map_iter(of_run).collect()
 }
 
-/// Parts that together hide the sun from a point whenever it is hidden, none of which can be left out, and when the
-/// surface's own plane does.
-fn cover(session: &mut OccluderSession, point: &SurfacePoint, least_t: f64) -> Shades {
-    let facing = session.facing(point);
-    let (lit, parts) = session.find(point);
-    let shade = facing.without(&lit);
-    let mut shades: Shades =
-        parts.into_iter().map(|part| (part, shade_of(session, point, &facing, part, least_t))).collect();
+/// When each of some parts alone hides the sun from a point that faces it.
+fn shades_of<'a>(alone: &'a Alone, parts: &'a [u32], least_t: f64) -> impl Iterator<Item = (u32, Intervals)> + 'a {
+    let of_part = move |(&part, lit): (&u32, &Intervals)| (part, alone.facing.without(lit).longer_than(least_t));
+    parts.iter().zip(&alone.lit).map(of_part)
+}
+
+/// Those of `parts` that together hide the sun from a point whenever it is hidden, none of which can be left out, and
+/// when the surface's own plane does.
+fn cover(session: &mut OccluderSession, point: &SurfacePoint, lit: &Intervals, parts: &[u32], least_t: f64) -> Shades {
+    let alone = session.alone(point, parts);
+    let facing = &alone.facing;
+    let shade = facing.without(lit);
+    let mut shades: Shades = shades_of(&alone, parts, least_t).collect();
     shades.retain(|(_, shade)| !shade.as_slice().is_empty());
     keep_needed(&mut shades, &shade, least_t.max(TOUCH));
-    shades.push((OWN_PLANE, Intervals::always().without(&facing).longer_than(TOUCH)));
+    shades.push((OWN_PLANE, Intervals::always().without(facing).longer_than(TOUCH)));
     shades.sort_by_key(|(part, _)| *part);
     shades
 }

@@ -28,7 +28,7 @@ use crate::atlas::{Around, PageSize, SurfacePoint, is_open};
 use crate::maps::{Bits, SHARP_REACH};
 use crate::progress::Progress;
 use crate::settings::TrackChoice;
-use crate::visibility::{Intervals, OccluderFinder};
+use crate::visibility::{Intervals, OccluderFinder, OccluderSession};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
@@ -62,6 +62,8 @@ pub struct PageShade<'a> {
     pub has_point: &'a (dyn Fn(u32) -> bool + Sync),
     /// The point of a texel that has one.
     pub point: &'a (dyn Fn(u32) -> SurfacePoint + Sync),
+    /// The parts that hide the sun from a texel that has a point, if they are known.
+    pub hiders: Option<&'a (dyn Fn(u32) -> Vec<u32> + Sync)>,
     /// What stands between texels.
     pub walls: Option<&'a [[u8; 2]]>,
     /// Width of the sun in path time.
@@ -70,6 +72,14 @@ pub struct PageShade<'a> {
     pub choice: TrackChoice,
     /// Bytes on a GPU that the tracks of the page may take.
     pub most_bytes: u64,
+}
+
+impl PageShade<'_> {
+    /// When a texel sees the sun, in path time.
+    fn lit_times(&self, texel: usize) -> Intervals {
+        let time = |code: u16| Bits::Sixteen.decode(code);
+        Intervals::from_unsorted(self.lit.of_texel(texel).iter().map(|span| span.times().map(time)).collect())
+    }
 }
 
 /// Finds the tracks of a page: none where no texel has any. Where `progress` is cancelled, they are not all there.
@@ -82,7 +92,11 @@ pub fn page_tracks(
     let linked = Linked { size: shade.size, source: shade.source, is_open: &is_way_open };
     let texels = texels_with_tracks(shade, &linked);
     let least_t = LEAST_SPAN * shade.width_t;
-    let found = find_spans(finder, &texels, shade.point, shade.size, shade.walls, least_t, progress);
+    let hiders = |session: &mut OccluderSession, texel: u32, point: &SurfacePoint| match shade.hiders {
+        Some(hiders) => (shade.lit_times(texel as usize), hiders(texel)),
+        None => session.find(point),
+    };
+    let found = find_spans(finder, &texels, shade.point, &hiders, shade.size, shade.walls, least_t, progress);
     let worth = Worth::new(shade, &linked, &texels, &found);
     let kept = Kept { shade, texels: &texels, found: &found, worth: &worth, least: worth.least(shade, &found) };
     let (all, counts) = kept.with_merged(&linked);
@@ -269,6 +283,9 @@ fn merged(lit: &[FoundSpan]) -> Vec<FoundSpan> {
 
 /// Merged shade; of more spans than are stored, that which is wrong for the shortest time.
 fn fitted(shade: &[[u16; 2]], most: usize) -> Vec<FoundSpan> {
+    if shade.len() <= most {
+        return shade.iter().map(|&[start, end]| FoundSpan { part: MERGED, start, end }).collect();
+    }
     let time = |code: u16| Bits::Sixteen.decode(code);
     let shade = Intervals::from_unsorted(shade.iter().map(|span| span.map(time)).collect());
     let (shade, _) = crate::maps::fit_to_cap(&shade, most);

@@ -16,15 +16,19 @@ pub(super) fn union(times: impl Iterator<Item = [u16; 2]>) -> Vec<[u16; 2]> {
     joined
 }
 
-/// What lies between the times of a list, from the path's start to its end.
+/// What lies between the times of a list, from the path's start to its end. Empty times part nothing.
 pub(super) fn between(times: impl IntoIterator<Item = [u16; 2]>) -> Vec<[u16; 2]> {
     let mut from = 0;
     let mut found = Vec::new();
-    for [start, end] in times.into_iter().chain([[Bits::Sixteen.max_code(); 2]]) {
+    for [start, end] in times.into_iter().filter(|[start, end]| start < end) {
         if from < start {
             found.push([from, start]);
         }
         from = end;
+    }
+    let last = Bits::Sixteen.max_code();
+    if from < last {
+        found.push([from, last]);
     }
     found
 }
@@ -59,6 +63,7 @@ mod tests {
         assert_eq!(between(all.iter().copied()), [[0, 5], [20, 30], [50, 65535]]);
         assert_eq!(between([[0, 20], [30, 65535]]), [[20, 30]]);
         assert_eq!(between([]), [[0, 65535]]);
+        assert_eq!(between([[7, 7], [9, 65535]]), [[0, 9]]);
         assert_eq!(both(&all, &[[0, 7], [15, 35], [49, 60]]), [[5, 7], [15, 20], [30, 35], [49, 50]]);
         assert_eq!(both(&all, &[[20, 30]]), [[0u16; 2]; 0]);
     }

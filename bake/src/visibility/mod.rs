@@ -8,6 +8,7 @@
 mod bisect;
 mod buried;
 mod exact;
+mod hiders;
 mod lamp;
 mod probe;
 mod rays;
@@ -16,7 +17,8 @@ mod start;
 pub use crate::intervals::{IntervalTable, Intervals};
 pub use bisect::BisectEngine;
 pub(crate) use buried::{Answers, BuriedPoints, fill_buried};
-pub use exact::{ExactEngine, OccluderFinder, OccluderSession};
+pub use exact::{Alone, ExactEngine, OccluderFinder, OccluderSession};
+pub use hiders::Hiders;
 pub use lamp::{LampEngine, LampRays};
 pub use rays::RayEngine;
 pub use start::{RayStart, SurfaceSide, ray_starts};
@@ -45,6 +47,11 @@ pub trait Session {
 
     /// Work done since the session started.
     fn work(&self) -> Work;
+
+    /// What hid the sun from each point so far, if the engine notes that.
+    fn take_hiders(&mut self) -> Hiders {
+        Hiders::default()
+    }
 }
 
 /// Work done, by kind.
@@ -80,25 +87,35 @@ pub fn lit_at(engine: &dyn Engine, point: &SurfacePoint) -> Vec<Intervals> {
 /// How many neighbouring points a session is given.
 const RUN: usize = 1024;
 
-/// Finds the lit intervals of every point, on all threads of the current pool. Answers come in the order of the points;
-/// for each point one list for each of the engine's lanes. `on_progress` gets the number of points that were done and
+/// What an engine found of some points.
+pub struct Solved {
+    /// Lit intervals in the order of the points: for each point one list for each of the engine's lanes.
+    pub tables: Vec<IntervalTable>,
+    /// What hides the sun from each point, if the engine notes that.
+    pub hiders: Hiders,
+    /// What it took.
+    pub work: Work,
+}
+
+/// Finds the lit intervals of every point, on all threads of the current pool. `on_progress` gets the number of points that were done and
 /// returns false to stop; then there is no answer.
 pub fn solve_visibility(
     engine: &dyn Engine,
     point_count: usize,
     point: impl Fn(usize) -> SurfacePoint + Sync,
     on_progress: impl Fn(usize) -> bool + Sync,
-) -> Option<(Vec<IntervalTable>, Work)> {
+) -> Option<Solved> {
     let find_run = |run| {
         let range = run * RUN..point_count.min((run + 1) * RUN);
         let mut session = engine.session();
         let points: Vec<SurfacePoint> = range.clone().map(&point).collect();
         let mut table = IntervalTable::default();
         session.lit(&points, &mut table);
-        on_progress(range.len()).then(|| (table, session.work()))
+        on_progress(range.len()).then(|| (table, session.take_hiders(), session.work()))
     };
-    let runs: Vec<(IntervalTable, Work)> =
+    let runs: Vec<(IntervalTable, Hiders, Work)> =
         (0..point_count.div_ceil(RUN)).into_par_iter().map(find_run).collect::<Option<_>>()?;
-    let work = runs.iter().fold(Work::default(), |sum, (_, work)| sum + *work);
-    Some((runs.into_iter().map(|(table, _)| table).collect(), work))
+    let work = runs.iter().fold(Work::default(), |sum, (.., work)| sum + *work);
+    let (tables, hiders) = runs.into_iter().map(|(table, hiders, _)| (table, hiders)).unzip();
+    Some(Solved { tables, hiders: Hiders::joined(hiders), work })
 }

@@ -30,8 +30,9 @@ mod solve;
 mod walk;
 
 use super::start::{RayStart, ray_starts};
-use super::{Engine, IntervalTable, Intervals, Session, Work};
+use super::{Engine, Hiders, IntervalTable, Intervals, Session, Work};
 use crate::atlas::SurfacePoint;
+use crate::scene::Components;
 use crate::sun::SunPath;
 use crate::trace::Tracer;
 use crate::trace::bvh16::Bvh16;
@@ -40,7 +41,7 @@ use boxes::BoxFrames;
 use cover::{GapCloser, Query};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat3, DVec3};
-pub use occluders::{OccluderFinder, OccluderSession};
+pub use occluders::{Alone, OccluderFinder, OccluderSession};
 use walk::Walk;
 
 /// Growth of every box, tracer space (whose half size is 512 to 1024): four times the steps of an `f32` that turning a
@@ -54,6 +55,8 @@ pub struct ExactEngine<'a> {
     arcs: Vec<Arc>,
     lane_count: usize,
     level: Level,
+    /// For each triangle of the tracer, its part, if what hides the sun is noted.
+    parts: Option<Vec<u32>>,
 }
 
 struct Arc {
@@ -71,7 +74,12 @@ impl<'a> ExactEngine<'a> {
         let bvh = Bvh16::new(tracer, axes, padding);
         let arc = |frame| Arc { frames: BoxFrames::new(&frame, axes, padding), frame };
         let arcs = frames.into_iter().map(arc).collect();
-        Self { tracer, bvh, arcs, lane_count: lanes.len(), level: Level::new() }
+        Self { tracer, bvh, arcs, lane_count: lanes.len(), level: Level::new(), parts: None }
+    }
+
+    /// The same engine, whose sessions note which parts hide the sun. Those with alpha masks are left out.
+    pub fn noting(self, parts: &Components) -> Self {
+        Self { parts: Some(parts_of(self.tracer, parts)), ..self }
     }
 }
 
@@ -105,6 +113,10 @@ struct PointScratch {
     query: Query,
     /// For each lane, when the point sees the sun.
     lit: Vec<Vec<[f64; 2]>>,
+    /// The parts that hide it.
+    parts: Vec<u32>,
+    /// Those of the points before.
+    hiders: Hiders,
 }
 
 impl Session for ExactSession<'_> {
@@ -115,6 +127,10 @@ impl Session for ExactSession<'_> {
 
     fn work(&self) -> Work {
         self.scratch.walk.work
+    }
+
+    fn take_hiders(&mut self) -> Hiders {
+        std::mem::take(&mut self.scratch.hiders)
     }
 }
 
@@ -129,12 +145,15 @@ impl ExactSession<'_> {
             for times in &mut self.scratch.lit {
                 answers.push(&Intervals::from_unsorted(std::mem::take(times)));
             }
+            if self.engine.parts.is_some() {
+                self.scratch.hiders.push(&mut self.scratch.parts);
+            }
         }
     }
 
     /// Finds the lit spans of one arc that rays from one start of a point reach.
     fn solve_start<S: Simd>(&mut self, simd: S, arc: usize, start: &RayStart, point: &SurfacePoint) {
-        let Self { engine, closers, scratch: PointScratch { walk, query, lit } } = self;
+        let Self { engine, closers, scratch: PointScratch { walk, query, lit, parts, .. } } = self;
         let Arc { frame, frames } = &engine.arcs[arc];
         if !engine.start_query(frame, point, start, query) {
             return;
@@ -145,11 +164,24 @@ impl ExactSession<'_> {
             if !query.is_done() {
                 walk.close(simd, &engine.bvh, frames, closer, query);
             }
+            if let Some(of_triangle) = &engine.parts {
+                parts.extend(solid(engine.tracer, &closer.useful).map(|id| of_triangle[id as usize]));
+            }
         }
         for (gaps, times) in query.gaps.iter().zip(lit) {
             times.extend(gaps.as_slice().iter().map(|span| span.map(|u| frame.t_of(u))));
         }
     }
+}
+
+/// For each triangle of a tracer, its part.
+fn parts_of(tracer: &Tracer, parts: &Components) -> Vec<u32> {
+    tracer.flat().iter().map(|&flat| parts.of_triangle[flat as usize]).collect()
+}
+
+/// Triangles without alpha masks.
+fn solid(tracer: &Tracer, triangles: &[u32]) -> impl Iterator<Item = u32> {
+    triangles.iter().copied().filter(|&id| !tracer.has_alpha_mask(id))
 }
 
 impl ExactEngine<'_> {

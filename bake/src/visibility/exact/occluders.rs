@@ -4,15 +4,16 @@
 //! ([`Components`]) is that part's shade, whether or not something else stands in the same light. Shade by one part
 //! moves smoothly from point to point, which the merged shade of many does not.
 //!
-//! Practice: the parts that matter at a point are those whose triangles closed gaps in an ordinary query
-//! ([`OccluderSession::find`]). A part is asked alone ([`OccluderSession::alone`]) by a query that only its own
+//! Practice: the parts that matter at a point are those whose triangles closed gaps in an ordinary query: noted by a
+//! bake's own ([`ExactEngine::noting`]), or asked for ([`OccluderSession::find`]). A part is asked alone ([`OccluderSession::alone`]) by a query that only its own
 //! triangles close: small parts one triangle after the other, large ones through a hierarchy of their own. What a
-//! surface's own plane and the horizon hide is no part's: it is what [`OccluderSession::facing`] leaves out.
+//! surface's own plane and the horizon hide is no part's: it is what [`Alone::facing`] leaves out.
 
+use super::arc::ArcFrame;
 use super::cover::{GapCloser, Query};
 use super::solve::{SIMD_WIDTH, TriangleBatch};
 use super::walk::Walk;
-use super::{BOX_PADDING, ExactEngine};
+use super::{BOX_PADDING, ExactEngine, parts_of, solid};
 use crate::atlas::SurfacePoint;
 use crate::intervals::Intervals;
 use crate::scene::Components;
@@ -41,7 +42,7 @@ impl<'a> OccluderFinder<'a> {
     /// Sorts an engine's triangles by their parts.
     pub fn new(engine: &'a ExactEngine<'a>, parts: &Components) -> Self {
         let tracer = engine.tracer;
-        let part: Vec<u32> = tracer.flat().iter().map(|&flat| parts.of_triangle[flat as usize]).collect();
+        let part = parts_of(tracer, parts);
         let mut triangles: Vec<u32> = (0..part.len() as u32).collect();
         triangles.sort_by_key(|&id| part[id as usize]);
         let first: Vec<u32> = (0..=parts.count as u32)
@@ -92,54 +93,68 @@ pub struct OccluderSession<'a> {
     query: Query,
 }
 
-impl OccluderSession<'_> {
-    /// When the sun is above the horizon and in front of a point.
-    pub fn facing(&mut self, point: &SurfacePoint) -> Intervals {
-        self.each_start(point, |_, _, _| {})
-    }
+/// What some parts would hide from a point, each if it were alone.
+pub struct Alone {
+    /// When the sun is above the horizon and in front of the point.
+    pub facing: Intervals,
+    /// For each part, when the point would see the sun.
+    pub lit: Vec<Intervals>,
+}
 
+impl OccluderSession<'_> {
     /// When a point sees the sun, and the parts that hide it at other times: ascending, each once. There may be more
     /// than are needed.
     pub fn find(&mut self, point: &SurfacePoint) -> (Intervals, Vec<u32>) {
-        let level = self.finder.engine.level;
-        let mut parts = Vec::new();
-        let lit = self.each_start(point, |session, arc, start| {
-            let Self { finder, closers, walk, query, .. } = session;
-            let closer = &mut closers[arc][start.kind()];
-            dispatch!(level, simd => finder.close_all(simd, arc, closer, walk, query));
-            let solid = closer.useful.iter().filter(|&&id| !finder.engine.tracer.has_alpha_mask(id));
-            parts.extend(solid.map(|&id| finder.part[id as usize]));
-        });
-        parts.sort_unstable();
-        parts.dedup();
-        (lit, parts)
-    }
-
-    /// When a point would see the sun if one part were alone.
-    pub fn alone(&mut self, point: &SurfacePoint, part: u32) -> Intervals {
-        let level = self.finder.engine.level;
-        self.each_start(point, |session, arc, _| {
-            let Self { finder, alone, walk, query, .. } = session;
-            let closer = &mut alone[arc];
-            dispatch!(level, simd => finder.close_part(simd, arc, part, closer, walk, query));
-        })
-    }
-
-    /// Lets `close` close the gaps of each arc and start, and gives what stays open.
-    fn each_start(&mut self, point: &SurfacePoint, mut close: impl FnMut(&mut Self, usize, &RayStart)) -> Intervals {
-        let engine = self.finder.engine;
-        let mut lit = Vec::new();
+        let Self { finder, closers, walk, query, .. } = self;
+        let engine = finder.engine;
+        let (mut lit, mut parts) = (Vec::new(), Vec::new());
         for start in ray_starts(point) {
             for (index, arc) in engine.arcs.iter().enumerate() {
-                if engine.start_query(&arc.frame, point, &start, &mut self.query) {
-                    close(self, index, &start);
-                    let gaps = self.query.gaps[0].as_slice();
-                    lit.extend(gaps.iter().map(|span| span.map(|u| arc.frame.t_of(u))));
+                if engine.start_query(&arc.frame, point, &start, query) {
+                    let closer = &mut closers[index][start.kind()];
+                    dispatch!(engine.level, simd => finder.close_all(simd, index, closer, walk, query));
+                    parts.extend(solid(engine.tracer, &closer.useful).map(|id| finder.part[id as usize]));
+                    lit.extend(open_times(query, &arc.frame));
                 }
             }
         }
-        Intervals::from_unsorted(lit)
+        parts.sort_unstable();
+        parts.dedup();
+        (Intervals::from_unsorted(lit), parts)
     }
+
+    /// What some parts would hide from a point, each if it were alone.
+    pub fn alone(&mut self, point: &SurfacePoint, parts: &[u32]) -> Alone {
+        dispatch!(self.finder.engine.level, simd => self.alone_with(simd, point, parts))
+    }
+
+    fn alone_with<S: Simd>(&mut self, simd: S, point: &SurfacePoint, parts: &[u32]) -> Alone {
+        let Self { finder, alone, walk, query, .. } = self;
+        let engine = finder.engine;
+        let mut facing = Vec::new();
+        let mut lit = vec![Vec::new(); parts.len()];
+        for start in ray_starts(point) {
+            for (index, arc) in engine.arcs.iter().enumerate() {
+                if !engine.start_query(&arc.frame, point, &start, query) {
+                    continue;
+                }
+                facing.extend(open_times(query, &arc.frame));
+                let open = query.gaps[0].clone();
+                for (&part, lit) in parts.iter().zip(&mut lit) {
+                    query.gaps[0].clone_from(&open);
+                    finder.close_part(simd, index, part, &mut alone[index], walk, query);
+                    lit.extend(open_times(query, &arc.frame));
+                }
+            }
+        }
+        let lit = lit.into_iter().map(Intervals::from_unsorted).collect();
+        Alone { facing: Intervals::from_unsorted(facing), lit }
+    }
+}
+
+/// What is still open of a query's first lane, in path time.
+fn open_times<'q>(query: &'q Query, frame: &'q ArcFrame) -> impl Iterator<Item = [f64; 2]> + 'q {
+    query.gaps[0].as_slice().iter().map(|span| span.map(|u| frame.t_of(u)))
 }
 
 impl OccluderFinder<'_> {
