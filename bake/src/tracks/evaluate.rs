@@ -12,8 +12,9 @@ use crate::atlas::Footprint;
 use crate::maps::{SHARP_REACH, edge_sample_of, sharpened};
 use glam::Vec3;
 
-/// Parts of the sun's width.
-const PARTS: usize = 8;
+/// Parts of the sun's width. Where many tracks end at once, what they hide of a part adds up to all of it while they
+/// pass a small share of it. So light may change by a part at once, which must not be seen.
+const PARTS: usize = 12;
 /// Visibility that is left by rounding, and is none.
 const ROUNDING: f32 = 1e-5;
 
@@ -86,6 +87,10 @@ impl Window {
         let part_codes = self.width / PARTS as f32;
         let mut hidden = [0.0f32; PARTS];
         let mut hide = |start: f32, end: f32, weight: f32| {
+            // Most shade is at other times.
+            if end <= 0.0 || start >= self.width {
+                return;
+            }
             for (part, hidden) in hidden.iter_mut().enumerate() {
                 // From the window's start: far from it, codes are as coarse as `f32`.
                 let from = part as f32 * part_codes;

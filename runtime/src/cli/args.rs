@@ -202,9 +202,9 @@ pub struct LookArgs {
     /// How ambient light is computed.
     #[arg(long, value_enum, default_value_t = AmbientChoice::Best)]
     pub ambient: AmbientChoice,
-    /// How stored times are filtered.
-    #[arg(long, value_enum, default_value_t = FilterChoice::Bilinear)]
-    pub filter: FilterChoice,
+    /// How stored times are filtered. [default: tracks, where a set has them, else bilinear]
+    #[arg(long, value_enum)]
+    pub filter: Option<FilterChoice>,
     /// Samples along each of a pixel's edges, 1 to 8: pictures are drawn N times as wide and high, and averaged. Time
     /// grows with the square; 1 leaves edges jagged. [default: 2; of visibility, and of pictures over 4096 pixels, 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]

@@ -1,6 +1,6 @@
 //! `sunplay demo`: bakes our own scene, plays its day back, and shows it beside truth.
 
-use super::args::{AmbientChoice, DemoArgs, FilterChoice, LightChoice, LookArgs, OutputChoice, TechniqueChoice};
+use super::args::{AmbientChoice, DemoArgs, LightChoice, LookArgs, OutputChoice, TechniqueChoice};
 use super::draw::{open_gpu, technique, view};
 use super::files::{make_folder, write_rgb};
 use serde::Serialize;
@@ -117,7 +117,7 @@ fn look(args: &DemoArgs) -> LookArgs {
         map_size: None,
         cascades: None,
         bias: None,
-        filter: FilterChoice::Bilinear,
+        filter: None,
         supersample: Some(SUPERSAMPLE),
         light: LightChoice::Both,
         ambient: AmbientChoice::Best,

@@ -88,9 +88,18 @@ fn map_settings(look: &LookArgs, variant: Variant) -> MapSettings {
         size_texels: look.map_size.unwrap_or(settings.size_texels),
         cascades: look.cascades.map_or(settings.cascades, |n| n as usize),
         bias: look.bias.unwrap_or(settings.bias),
-        lamp_filter: look.filter.into(),
+        lamp_filter: look.filter.map_or(Filter::Bilinear, Into::into),
         ..settings
     }
+}
+
+/// Whoever baked tracks wants to see them.
+fn usual_filter(stage: &Stage) -> Filter {
+    if has_tracks(stage) { Filter::Tracks } else { Filter::Bilinear }
+}
+
+fn has_tracks(stage: &Stage) -> bool {
+    stage.pages.iter().any(|page| page.tracks.is_some())
 }
 
 /// The technique that was asked for, ready to draw a stage.
@@ -99,7 +108,7 @@ pub fn technique<'a>(
     stage: &'a Stage,
     look: &LookArgs,
 ) -> Result<Box<dyn Technique + 'a>, Failure> {
-    let filter: Filter = look.filter.into();
+    let filter = look.filter.map_or_else(|| usual_filter(stage), Into::into);
     Ok(match (gpu, look.technique) {
         (Some(gpu), TechniqueChoice::Baked) => Box::new(BakedGpu::new(gpu, stage, filter)?),
         (None, TechniqueChoice::Baked) => Box::new(BakedCpu::new(stage, filter)),
@@ -170,7 +179,7 @@ pub fn stage(
     let read = if output == OutputChoice::Visibility { Stage::read_without_looks } else { Stage::read };
     let stage = warned(read(from)?);
     no_effect::check_filter(look, output, stage.lamp.is_some())?;
-    if look.filter == FilterChoice::Tracks && stage.pages.iter().all(|page| page.tracks.is_none()) {
+    if look.filter == Some(FilterChoice::Tracks) && !has_tracks(&stage) {
         return Err(Failure::usage("this set has no shadow tracks: bake it with --tracks, or give another --filter"));
     }
     let stage = match look.technique {

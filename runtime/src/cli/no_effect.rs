@@ -24,10 +24,8 @@ pub fn check_sky_of_set(look: &LookArgs) -> Result<(), Failure> {
 
 /// Refuses a filter where no stored times are read. Beside shadow maps these are a lamp's, if the stage has one.
 pub fn check_filter(look: &LookArgs, output: OutputChoice, has_lamp: bool) -> Result<(), Failure> {
-    if look.filter == FilterChoice::Bilinear {
-        return Ok(());
-    }
-    let filter = format!("--filter {} has no effect", spelling(&look.filter));
+    let Some(filter) = look.filter.filter(|filter| *filter != FilterChoice::Bilinear) else { return Ok(()) };
+    let filter = format!("--filter {} has no effect", spelling(&filter));
     let shows_lamp = match output {
         OutputChoice::Visibility => look.light == LightChoice::Lamp,
         _ => matches!(look.light, LightChoice::Lamp | LightChoice::Both),

@@ -15,7 +15,7 @@ const NO_TRACK: u32 = 65536u;
 // Visibility that is left by rounding, and is none.
 const ROUNDING: f32 = 1e-5;
 
-// The sun's width in eight parts, and how much of each is hidden. Codes are counted from where they begin: far from it,
+// The sun's width in twelve parts, and how much of each is hidden. Codes are counted from where they begin: far from it,
 // codes are as coarse as f32.
 struct Parts {
     // Of a part.
@@ -23,6 +23,7 @@ struct Parts {
     // Where the first begins, in codes.
     start: f32,
     first: vec4<f32>,
+    middle: vec4<f32>,
     last: vec4<f32>,
 }
 
@@ -54,11 +55,19 @@ fn shade_of(span: u32) -> vec2<f32> {
 // Hides what lies between two codes.
 fn hide(parts: ptr<function, Parts>, shade: vec2<f32>, weight: f32) {
     let width = (*parts).width;
+    // Most shade is at other times.
+    if shade.y <= 0.0 || shade.x >= 12.0 * width {
+        return;
+    }
     let start = width * vec4<f32>(0.0, 1.0, 2.0, 3.0);
-    let later = start + 4.0 * width;
-    let zero = vec4<f32>(0.0);
-    (*parts).first += weight * max(min(vec4<f32>(shade.y), start + width) - max(vec4<f32>(shade.x), start), zero);
-    (*parts).last += weight * max(min(vec4<f32>(shade.y), later + width) - max(vec4<f32>(shade.x), later), zero);
+    (*parts).first += weight * hidden(shade, start, width);
+    (*parts).middle += weight * hidden(shade, start + 4.0 * width, width);
+    (*parts).last += weight * hidden(shade, start + 8.0 * width, width);
+}
+
+// How much shade lies in four parts of a width.
+fn hidden(shade: vec2<f32>, start: vec4<f32>, width: f32) -> vec4<f32> {
+    return max(min(vec4<f32>(shade.y), start + width) - max(vec4<f32>(shade.x), start), vec4<f32>(0.0));
 }
 
 fn list_of(texel: vec2<i32>) -> vec2<u32> {
@@ -68,7 +77,7 @@ fn list_of(texel: vec2<i32>) -> vec2<u32> {
 
 // What the sharp filter blends of a texel with this list of merged shade.
 fn merged_sample(list: vec2<u32>, parts: Parts) -> vec3<f32> {
-    let width = 8.0 * parts.width;
+    let width = 12.0 * parts.width;
     let middle = 0.5 * width;
     let reach = SHARP_REACH * width;
     // There is no sun before and after the path.
@@ -87,7 +96,8 @@ fn merged_sample(list: vec2<u32>, parts: Parts) -> vec3<f32> {
 
 fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
     let width = max(frame.width_t * SPAN_CODES, 1.0);
-    var parts = Parts(width / 8.0, frame.t * SPAN_CODES - 0.5 * width, vec4<f32>(0.0), vec4<f32>(0.0));
+    let none = vec4<f32>(0.0);
+    var parts = Parts(width / 12.0, frame.t * SPAN_CODES - 0.5 * width, none, none, none);
     var lists = array<vec2<u32>, 4>();
     var tracks = array<u32, 4>();
     var without = vec4<f32>(0.0);
@@ -123,7 +133,7 @@ fn seen_beside_tracks(all: array<vec2<u32>, 4>, first: array<u32, 4>, weights: v
     var tracks = first;
     var parts = window;
     let sum = dot(weights, vec4<f32>(1.0));
-    let width = 8.0 * parts.width;
+    let width = 12.0 * parts.width;
     // There is no sun before and after the path.
     hide(&parts, vec2<f32>(0.0, -parts.start), sum);
     hide(&parts, vec2<f32>(SPAN_CODES - parts.start, width), sum);
@@ -145,7 +155,8 @@ fn seen_beside_tracks(all: array<vec2<u32>, 4>, first: array<u32, 4>, weights: v
         hide(&parts, shade / weight - parts.start, weight);
     }
     let whole = vec4<f32>(sum * parts.width);
-    let open = max(whole - parts.first, vec4<f32>(0.0)) + max(whole - parts.last, vec4<f32>(0.0));
+    let none = vec4<f32>(0.0);
+    let open = max(whole - parts.first, none) + max(whole - parts.middle, none) + max(whole - parts.last, none);
     return dot(open, vec4<f32>(1.0)) / width;
 }
 
