@@ -2,14 +2,14 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use sunbake::atlas::{Footprint, PageSize, SurfacePoint};
-use sunbake::maps::{Bits, PageEncoder, edge_sample, sharpened, soft_visibility};
+use sunbake::maps::{Bits, PageEncoder, edge_sample, hard_visibility, sharpened, soft_visibility};
 use sunbake::progress::Silent;
 use sunbake::scene::{Components, Geometry, Scene};
 use sunbake::settings::{BakeSettings, SunRequest, TrackChoice};
 use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake::trace::{Direction, Tracer};
-use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
+use sunbake::tracks::{Linked, MOST_SPANS, PageTracks, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, IntervalTable, Intervals, OccluderFinder, lit_at, solve_visibility};
 use sunbake::{Bake, bake_scene};
 
@@ -208,6 +208,7 @@ fn texels_centres_show_what_they_see() {
     assert!(worst < 0.13 && sum / f64::from(count) < 0.002, "{worst} at worst, {} on average", sum / f64::from(count));
 }
 
+/// B20.
 #[test]
 fn pickets_narrower_than_texels_cast_lines() {
     let patch = Patch::new();
@@ -243,6 +244,7 @@ fn pickets_narrower_than_texels_cast_lines() {
     assert!(tracked < 0.3 * plain.min(sharp), "bilinear {plain}, sharp {sharp}, tracks {tracked}");
 }
 
+/// B20.
 #[test]
 fn nothing_pops_in_time_or_between_quads() {
     let patch = Patch::new();
@@ -281,4 +283,52 @@ fn a_bake_finds_the_same_tracks_with_one_thread_and_with_two() {
     let without = without.expect("a bake");
     assert!(tracks(&without).iter().all(Option::is_none) && without.manifest.stats.tracks.is_none());
     assert_eq!(without.pages[0].maps.lanes, one.pages[0].maps.lanes, "the times are the same");
+}
+
+/// B14: of more shadows than a list holds those are merged that matter least.
+#[test]
+fn of_more_shadows_than_a_list_holds_the_least_are_merged() {
+    let wire = |index: usize| {
+        let x = -3.9 + 0.07 * index as f32;
+        block(Vec3::new(x, 0.0, -0.005), Vec3::new(x + 0.02, 1.0, 0.005))
+    };
+    let soup: Vec<[Vec3; 3]> = (0..111).flat_map(wire).collect();
+    let settings = BakeSettings {
+        page_size_texels: 64,
+        ambient: None,
+        tracks: TrackChoice::On,
+        layer_cap: 64,
+        ..BakeSettings::standard(SunRequest::Day(request()))
+    };
+    let bake = bake_scene(&ground().soup(&soup).build(), &settings, &Silent).expect("a bake");
+    let found = bake.manifest.stats.tracks.expect("tracks were asked for");
+    assert!(found.crowded_texels > 100, "{found:?}");
+    let (path, maps) = (path(), &bake.pages[0].maps);
+    let (size, layers) = (PageSize { width: maps.width, height: maps.height }, &maps.lanes[0].layers);
+    let tracks = maps.tracks.as_ref().expect("tracks were found");
+    let (mut wrong, mut least, mut dark) = (0.0, 0.0, 0.0);
+    for texel in 0..tracks.ranges.len() {
+        // Each wire's shade lasts about as long: what no list of spans could hold follows from their number.
+        let moments = || (0..4_000).map(|i| i as f32 / 4_000.0);
+        let lit: Vec<bool> = moments().map(|t| hard_visibility(layers, texel, bake.bits.times, t) > 0.5).collect();
+        let shadows = lit.windows(2).filter(|pair| pair[0] && !pair[1]).count();
+        if shadows <= MOST_SPANS {
+            continue;
+        }
+        assert!(tracks.of_texel(texel).len() <= MOST_SPANS);
+        let at = DVec2::new((texel % size.width as usize) as f64, (texel / size.width as usize) as f64);
+        let mut texel_dark = 0.0;
+        for t in (1..400).map(|i| f64::from(i) / 400.0) {
+            let (moment, width_t) = (t as f32, path.width_t(t) as f32);
+            let seen = tracked_visibility(tracks, &Footprint::new(at, size), moment, width_t);
+            let stored = soft_visibility(layers, texel, bake.bits.times, moment, width_t);
+            wrong += f64::from((seen - stored).abs());
+            texel_dark += f64::from(1.0 - stored);
+        }
+        dark += texel_dark;
+        least += texel_dark * (1.0 - MOST_SPANS as f64 / shadows as f64);
+    }
+    let [wrong, least] = [wrong, least].map(|sum| sum / dark);
+    println!("{wrong:.4} of the shade of crowded texels is wrong, about {least:.4} must be");
+    assert!(wrong < 1.5 * least, "{wrong} of {least}");
 }

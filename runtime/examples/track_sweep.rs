@@ -2,10 +2,9 @@
 //!
 //!     cargo run --release --example track_sweep -- SET SHEET.png [OBJECT]
 //!
-//! SET is our own scene, baked with `--tracks`; OBJECT is one of `track_sheet`, the fence unless given. The day is played
-//! back in steps of a twentieth of the sun's width, by tracks and by texels. No step of light that moves evenly across a
-//! disc is over a twentieth; printed are the largest step of any pixel and how many are over 0.1. The sheet shows the
-//! largest steps of tracks: before, after, and truth between.
+//! SET is our own scene, baked with `--tracks`; OBJECT is one of `track_sheet`, the fence unless given. The day is
+//! played back in steps of a twentieth of the sun's width. Printed are the largest change of any pixel in a step, and
+//! how many are over 0.1. The sheet shows the largest steps of tracks: before, after, what changed, and truth.
 
 mod common;
 #[path = "common/looks.rs"]

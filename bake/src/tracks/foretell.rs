@@ -1,5 +1,5 @@
-//! What a texel would see if it were drawn from the texels on both sides of it, and how wrong that is: for a sun without
-//! width, in codes of time.
+//! What a texel would see if it were drawn from the texels on both sides of it, and how wrong that is: for a sun
+//! without width, in codes of time.
 
 use super::link::matches;
 use super::{FoundSpan, MERGED};

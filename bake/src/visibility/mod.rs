@@ -97,8 +97,8 @@ pub struct Solved {
     pub work: Work,
 }
 
-/// Finds the lit intervals of every point, on all threads of the current pool. `on_progress` gets the number of points that were done and
-/// returns false to stop; then there is no answer.
+/// Finds the lit intervals of every point, on all threads of the current pool. `on_progress` gets the number of points
+/// that were done and returns false to stop; then there is no answer.
 pub fn solve_visibility(
     engine: &dyn Engine,
     point_count: usize,

@@ -15,8 +15,8 @@ const NO_TRACK: u32 = 65536u;
 // Visibility that is left by rounding, and is none.
 const ROUNDING: f32 = 1e-5;
 
-// The sun's width in twelve parts, and how much of each is hidden. Codes are counted from where they begin: far from it,
-// codes are as coarse as f32.
+// The sun's width in twelve parts, and how much of each is hidden. Codes are counted from where they begin: far from
+// it, codes are as coarse as f32.
 struct Parts {
     // Of a part.
     width: f32,
