@@ -14,7 +14,7 @@ use sunbake::progress::Silent;
 use sunbake::scene::{Components, Geometry, LoadLimits, Scene, load};
 use sunbake::sun::{DayOutcome, DayRequest};
 use sunbake::trace::{Direction, Tracer};
-use sunbake::tracks::{Linked, PageTracks, find_spans, number_tracks, tracked_visibility};
+use sunbake::tracks::{Linked, PageTracks, SpanSearch, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, Intervals, OccluderFinder, lit_at};
 
 const EDGE_M: f64 = 6.0;
@@ -128,16 +128,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             let least_t = path.width_t(0.5) / 8.0;
             let texels: Vec<u32> = (0..points.len() as u32).filter(|&texel| points[texel as usize].is_some()).collect();
             let point = |texel: u32| points[texel as usize].unwrap_or_else(|| unreachable!("it has a point"));
-            let found = find_spans(
-                &finder,
-                &texels,
-                &point,
-                &|session, _, point| session.find(point),
+            let search = SpanSearch {
+                finder: &finder,
+                point: &point,
+                hiders: &|session, _, point| session.find(point),
                 size,
-                None,
+                walls: None,
                 least_t,
-                &Silent,
-            );
+            };
+            let found = find_spans(&search, &texels, &Silent);
             let found_seconds = started.elapsed().as_secs_f64();
             let tracks: PageTracks = number_tracks(&found, &Linked { size, source: &texels, is_open: &|_, _| true });
             let seconds = started.elapsed().as_secs_f64();

@@ -9,7 +9,7 @@ use sunbake::settings::{BakeSettings, SunRequest, TrackChoice};
 use sunbake::sun::{DayOutcome, DayRequest, SunPath, day};
 use sunbake::testing::{SceneBuilder, block, floor};
 use sunbake::trace::{Direction, Tracer};
-use sunbake::tracks::{Linked, MOST_SPANS, PageTracks, find_spans, number_tracks, tracked_visibility};
+use sunbake::tracks::{Linked, MOST_SPANS, PageTracks, SpanSearch, find_spans, number_tracks, tracked_visibility};
 use sunbake::visibility::{ExactEngine, IntervalTable, Intervals, OccluderFinder, lit_at, solve_visibility};
 use sunbake::{Bake, bake_scene};
 
@@ -89,16 +89,15 @@ impl Patch {
         let finder = OccluderFinder::new(&engine, &parts);
         let texels: Vec<u32> = (0..EDGE * EDGE).collect();
         let point = |i: u32| point(&here, place(f64::from(i % EDGE), f64::from(i / EDGE)));
-        let found = find_spans(
-            &finder,
-            &texels,
-            &point,
-            &|session, _, point| session.find(point),
-            size(),
-            None,
-            path.width_t(0.5) / 8.0,
-            &Silent,
-        );
+        let search = SpanSearch {
+            finder: &finder,
+            point: &point,
+            hiders: &|session, _, point| session.find(point),
+            size: size(),
+            walls: None,
+            least_t: path.width_t(0.5) / 8.0,
+        };
+        let found = find_spans(&search, &texels, &Silent);
         let tracks = number_tracks(&found, &Linked { size: size(), source: &texels, is_open: &|_, _| true });
         Self { here, path, tracks }
     }

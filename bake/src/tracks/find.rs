@@ -21,20 +21,27 @@ type Shades = Vec<(u32, Intervals)>;
 /// Tells when a texel's point sees the sun, and which parts hide it at other times; there may be more than are needed.
 pub type FindHiders<'a> = dyn Fn(&mut OccluderSession, u32, &SurfacePoint) -> (Intervals, Vec<u32>) + Sync + 'a;
 
-/// Finds the spans of some texels of a page, in their order; each has a `point`. Spans shorter than `least_t`, in path
-/// time, are left out: they are too short to be seen. What matters at a texel is a minimal cover of its own shade and
-/// of that of texels around it, if they are asked for as well and none of the page's `walls` parts them. Where
-/// `progress` is cancelled, the rest has no spans.
-pub fn find_spans(
-    finder: &OccluderFinder,
-    texels: &[u32],
-    point: &(dyn Fn(u32) -> SurfacePoint + Sync),
-    hiders: &FindHiders,
-    size: PageSize,
-    walls: Option<&[[u8; 2]]>,
-    least_t: f64,
-    progress: &dyn Progress,
-) -> FoundSpans {
+/// What a search for spans looks at.
+pub struct SpanSearch<'a> {
+    /// Finds what parts hide.
+    pub finder: &'a OccluderFinder<'a>,
+    /// The point of each texel that is asked for.
+    pub point: &'a (dyn Fn(u32) -> SurfacePoint + Sync),
+    /// What may hide the sun from it.
+    pub hiders: &'a FindHiders<'a>,
+    /// Size of the page in texels.
+    pub size: PageSize,
+    /// What stands between texels.
+    pub walls: Option<&'a [[u8; 2]]>,
+    /// Shorter spans are left out, in path time: they are too short to be seen.
+    pub least_t: f64,
+}
+
+/// Finds the spans of some texels of a page, in their order. What matters at a texel is a minimal cover of its own
+/// shade and of that of texels around it, if they are asked for as well and no wall parts them. Where `progress` is
+/// cancelled, the rest has no spans.
+pub fn find_spans(search: &SpanSearch, texels: &[u32], progress: &dyn Progress) -> FoundSpans {
+    let &SpanSearch { finder, point, hiders, size, walls, least_t } = search;
     progress.start(BakeStep::Tracks, 2 * texels.len() as u64);
     let around = Around::new(size, walls);
     let covers: Vec<Shades> = of_texels(finder, texels, progress, |session, index| {

@@ -32,7 +32,7 @@ mod times;
 mod worth;
 
 pub use evaluate::tracked_visibility;
-pub use find::{FindHiders, find_spans};
+pub use find::{FindHiders, SpanSearch, find_spans};
 pub use link::{Linked, number_tracks};
 pub use page::{PageShade, page_tracks};
 

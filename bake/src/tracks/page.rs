@@ -22,7 +22,8 @@ use super::link::Linked;
 use super::times::{between, both, union};
 use super::worth::Worth;
 use super::{
-    DEEP, FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, TrackCounts, find_spans, number_tracks, parts,
+    DEEP, FoundSpan, FoundSpans, MERGED, MOST_SPANS, PageTracks, SpanSearch, TrackCounts, find_spans, number_tracks,
+    parts,
 };
 use crate::atlas::{Around, PageSize, SurfacePoint, is_open};
 use crate::maps::{Bits, SHARP_REACH};
@@ -96,7 +97,8 @@ pub fn page_tracks(
         Some(hiders) => (shade.lit_times(texel as usize), hiders(texel)),
         None => session.find(point),
     };
-    let found = find_spans(finder, &texels, shade.point, &hiders, shade.size, shade.walls, least_t, progress);
+    let &PageShade { point, size, walls, .. } = shade;
+    let found = find_spans(&SpanSearch { finder, point, hiders: &hiders, size, walls, least_t }, &texels, progress);
     let worth = Worth::new(shade, &linked, &texels, &found);
     let kept = Kept { shade, texels: &texels, found: &found, worth: &worth, least: worth.least(shade, &found) };
     let (all, counts) = kept.with_merged(&linked);
