@@ -7,8 +7,8 @@
 //! Practice: the parts that matter at a point are those whose triangles closed gaps in an ordinary query: noted by a
 //! bake's own ([`ExactEngine::noting`]), or asked for ([`OccluderSession::find`]). A part is asked alone
 //! ([`OccluderSession::alone`]) by a query that only its own triangles close: small parts one triangle after the other,
-//! large ones through a hierarchy of their own. What a surface's own plane and the horizon hide is no part's: it is what
-//! [`Alone::facing`] leaves out.
+//! large ones through a hierarchy of their own. What a surface's own plane and the horizon hide is no part's: it is
+//! what [`Alone::facing`] leaves out.
 
 use super::arc::ArcFrame;
 use super::cover::{GapCloser, Query};
