@@ -42,8 +42,8 @@ pub struct BakeSettings {
     pub smooth_terminator: bool,
     /// Whether times of the sun and the lamp are baked.
     pub bakes_intervals: bool,
-    /// Where shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes up to a few times
-    /// the time of the intervals, and bytes where shadows are dense. A light without width has none.
+    /// Where shadow tracks are found beside the times of the sun's centre ([`crate::tracks`]). Takes about half
+    /// the time of the intervals on top, and bytes where shadows are dense. A light without width has none.
     pub tracks: TrackChoice,
     /// Ambient light, if it is baked.
     pub ambient: Option<AmbientRequest>,

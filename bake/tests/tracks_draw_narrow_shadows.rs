@@ -207,7 +207,7 @@ fn texels_centres_show_what_they_see() {
     assert!(worst < 0.13 && sum / f64::from(count) < 0.002, "{worst} at worst, {} on average", sum / f64::from(count));
 }
 
-/// B20.
+/// B20: all day, tracks err a fraction of what filters do that know no occluders.
 #[test]
 fn pickets_narrower_than_texels_cast_lines() {
     let patch = Patch::new();
@@ -243,7 +243,7 @@ fn pickets_narrower_than_texels_cast_lines() {
     assert!(tracked < 0.3 * plain.min(sharp), "bilinear {plain}, sharp {sharp}, tracks {tracked}");
 }
 
-/// B20.
+/// B20: behind the fence, in steps of a twentieth of the sun's width.
 #[test]
 fn nothing_pops_in_time_or_between_quads() {
     let patch = Patch::new();

@@ -187,7 +187,7 @@ pub struct CostArgs {
     /// Find shadow tracks as well: when each thing that hides the sun starts and ends to, by itself.
     ///
     /// `sunplay --filter tracks` then draws shadows far narrower than texels, as those of fences, as clean lines. Takes
-    /// up to a few times the time of the intervals, and bytes where shadows are dense: see `tracks` in the summary.
+    /// about half the time of the intervals on top, and bytes where shadows are dense: see `tracks` in the summary.
     /// auto, which is meant without a value, keeps them where they gain something, within the bytes that the intervals
     /// take on a GPU; on keeps them wherever shade moves.
     #[arg(long, value_name = "auto|on|off", value_parser = parse_tracks, num_args = 0..=1, require_equals = true,

@@ -12,6 +12,8 @@ use crate::atlas::Footprint;
 use crate::maps::{SHARP_REACH, edge_sample_of, sharpened};
 use glam::Vec3;
 
+/// The code of the path's end.
+const MAX_CODE: f32 = u16::MAX as f32;
 /// Parts of the sun's width. Where many tracks end at once, what they hide of a part adds up to all of it while they
 /// pass a small share of it. So light may change by a part at once, which must not be seen.
 const PARTS: usize = 12;
@@ -55,8 +57,6 @@ struct Window {
     start: f32,
     width: f32,
 }
-
-const MAX_CODE: f32 = u16::MAX as f32;
 
 impl Window {
     fn new(t: f32, width_t: f32) -> Self {

@@ -15,7 +15,10 @@ const NO_TRACK: u32 = 65536u;
 // Visibility that is left by rounding, and is none.
 const ROUNDING: f32 = 1e-5;
 
-// The sun's width in twelve parts, and how much of each is hidden. Codes are counted from where they begin: far from
+// Parts of the sun's width, three times four.
+const PARTS: f32 = 12.0;
+
+// The sun's width in parts, and how much of each is hidden. Codes are counted from where they begin: far from
 // it, codes are as coarse as f32.
 struct Parts {
     // Of a part.
@@ -56,7 +59,7 @@ fn shade_of(span: u32) -> vec2<f32> {
 fn hide(parts: ptr<function, Parts>, shade: vec2<f32>, weight: f32) {
     let width = (*parts).width;
     // Most shade is at other times.
-    if shade.y <= 0.0 || shade.x >= 12.0 * width {
+    if shade.y <= 0.0 || shade.x >= PARTS * width {
         return;
     }
     let start = width * vec4<f32>(0.0, 1.0, 2.0, 3.0);
@@ -77,7 +80,7 @@ fn list_of(texel: vec2<i32>) -> vec2<u32> {
 
 // What the sharp filter blends of a texel with this list of merged shade.
 fn merged_sample(list: vec2<u32>, parts: Parts) -> vec3<f32> {
-    let width = 12.0 * parts.width;
+    let width = PARTS * parts.width;
     let middle = 0.5 * width;
     let reach = SHARP_REACH * width;
     // There is no sun before and after the path.
@@ -97,7 +100,7 @@ fn merged_sample(list: vec2<u32>, parts: Parts) -> vec3<f32> {
 fn tracked(at: Footprint, weights: vec4<f32>) -> f32 {
     let width = max(frame.width_t * SPAN_CODES, 1.0);
     let none = vec4<f32>(0.0);
-    var parts = Parts(width / 12.0, frame.t * SPAN_CODES - 0.5 * width, none, none, none);
+    var parts = Parts(width / PARTS, frame.t * SPAN_CODES - 0.5 * width, none, none, none);
     var lists = array<vec2<u32>, 4>();
     var tracks = array<u32, 4>();
     var without = vec4<f32>(0.0);
@@ -133,7 +136,7 @@ fn seen_beside_tracks(all: array<vec2<u32>, 4>, first: array<u32, 4>, weights: v
     var tracks = first;
     var parts = window;
     let sum = dot(weights, vec4<f32>(1.0));
-    let width = 12.0 * parts.width;
+    let width = PARTS * parts.width;
     // There is no sun before and after the path.
     hide(&parts, vec2<f32>(0.0, -parts.start), sum);
     hide(&parts, vec2<f32>(SPAN_CODES - parts.start, width), sum);
