@@ -139,9 +139,17 @@ fn bake_prepared(
     let (lanes, lane_paths) = path.map(|path| lanes_of(path, settings.lane_count)).unwrap_or_default();
     let track_path = path.filter(|_| plan.is_on(Effect::ShadowTracks));
     let parts = track_path.map(|_| Components::new(scene, &geometry));
-    let engine = path.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds, parts.as_ref()));
+    // Tracks ask the exact engine, along the sun's centre. Where that is the bake's own, one serves both.
+    let is_shared = settings.engine == EngineChoice::Exact && lanes.len() == 1;
+    let track_engine = track_path.zip(parts.as_ref()).map(|(path, parts)| {
+        let engine = ExactEngine::new(&tracer, std::slice::from_ref(path));
+        if is_shared { engine.noting(parts) } else { engine }
+    });
+    let shared = track_engine.as_ref().filter(|_| is_shared).map(|engine| engine as &dyn Engine);
+    let own = path.filter(|_| shared.is_none());
+    let own = own.map(|_| settings.engine.engine(&tracer, &lane_paths, settings.edge_seconds, parts.as_ref()));
+    let engine = shared.or(own.as_deref());
     let duration_min = path.map_or(0.0, |p| p.duration_min);
-    let track_engine = track_path.map(|path| ExactEngine::new(&tracer, std::slice::from_ref(path)));
     let finder = track_engine.as_ref().zip(parts.as_ref()).map(|(engine, parts)| OccluderFinder::new(engine, parts));
     let tracks = finder.as_ref().zip(path).map(|(finder, path)| TrackJob {
         finder,
@@ -149,7 +157,7 @@ fn bake_prepared(
         choice: settings.tracks,
     });
     let step = BakeStep::Visibility;
-    let sun = engine.as_deref().map(|engine| LightJob { engine, lanes: &lanes, duration_min, step, tracks });
+    let sun = engine.map(|engine| LightJob { engine, lanes: &lanes, duration_min, step, tracks });
     let lamp_engine = lamp.as_ref().map(|path| lamp_engine(settings.engine, &tracer, path, scene)).transpose()?;
     let lamp = lamp.as_ref().zip(lamp_engine.as_deref()).map(|(path, engine)| {
         let duration_min = path.duration_min();

@@ -44,55 +44,60 @@ pub fn find_spans(search: &SpanSearch, texels: &[u32], progress: &dyn Progress) 
     let &SpanSearch { finder, point, hiders, size, walls, least_t } = search;
     progress.start(BakeStep::Tracks, 2 * texels.len() as u64);
     let around = Around::new(size, walls);
-    let covers: Vec<Shades> = of_texels(finder, texels, progress, |session, index| {
+    let covers = of_texels(finder, texels, progress, |session, index| {
         let texel = texels[index];
         let point = point(texel);
         let (lit, parts) = hiders(session, texel, &point);
-        cover(session, &point, &lit, &parts, least_t)
+        spans_of(&cover(session, &point, &lit, &parts, least_t))
     });
     let mut place = vec![ABSENT; texels.iter().max().map_or(0, |&last| last as usize + 1)];
     texels.iter().zip(0..).for_each(|(&texel, index)| place[texel as usize] = index);
-    let cover_of = |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| &covers[i as usize]);
-    let all: Vec<Vec<FoundSpan>> = of_texels(finder, texels, progress, |session, index| {
-        let point = &point(texels[index]);
-        let own = &covers[index];
-        let others = around.texels(texels[index] as usize).filter_map(cover_of);
-        let mut parts: Vec<u32> = others.flat_map(|cover| cover.iter().map(|shade| shade.0)).collect();
+    let cover_of = |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| covers.of_texel(i as usize));
+    of_texels(finder, texels, progress, |session, index| {
+        let mut spans = covers.of_texel(index).to_vec();
+        let near = around.texels(texels[index] as usize).filter_map(cover_of).flatten();
+        let mut parts: Vec<u32> = near.map(|span| span.part).collect();
         parts.sort_unstable();
         parts.dedup();
-        parts.retain(|part| *part != OWN_PLANE && own.iter().all(|(own, _)| own != part));
-        let mut shades: Shades = own.clone();
+        parts.retain(|part| *part != OWN_PLANE && spans.iter().all(|span| span.part != *part));
         if !parts.is_empty() {
-            shades.extend(shades_of(&session.alone(point, &parts), &parts, least_t));
+            let alone = session.alone(&point(texels[index]), &parts);
+            let shades: Shades = shades_of(&alone, &parts, least_t).collect();
+            spans.extend(spans_of(&shades));
+            spans.sort_by_key(|span| span.part);
         }
-        shades.sort_by_key(|(part, _)| *part);
-        let spans = |(part, shade): &(u32, Intervals)| {
-            shade.as_slice().iter().map(|&shade| FoundSpan::new(*part, shade)).collect::<SmallVec<[FoundSpan; 8]>>()
-        };
-        shades.iter().flat_map(spans).collect()
-    });
-    let mut found = FoundSpans::default();
-    all.into_iter().for_each(|spans| found.push(spans));
-    found
+        spans
+    })
 }
 
-/// What `find` tells of each texel, by its index; nothing of the rest where `progress` is cancelled.
-fn of_texels<T: Default + Send>(
+/// The spans of each part's shade.
+fn spans_of(shades: &Shades) -> Vec<FoundSpan> {
+    let of_part = |(part, shade): &(u32, Intervals)| {
+        shade.as_slice().iter().map(|&shade| FoundSpan::new(*part, shade)).collect::<SmallVec<[FoundSpan; 8]>>()
+    };
+    shades.iter().flat_map(of_part).collect()
+}
+
+/// The spans that `find` tells of each texel, by its index; none of the rest where `progress` is cancelled.
+fn of_texels(
     finder: &OccluderFinder,
     texels: &[u32],
     progress: &dyn Progress,
-    find: impl Fn(&mut OccluderSession, usize) -> T + Sync,
-) -> Vec<T> {
+    find: impl Fn(&mut OccluderSession, usize) -> Vec<FoundSpan> + Sync,
+) -> FoundSpans {
     let of_run = |(run, some): (usize, &[u32])| {
-        let indices = run * RUN..run * RUN + some.len();
+        let mut found = FoundSpans::default();
         if progress.is_cancelled() {
-            return indices.map(|_| T::default()).collect::<Vec<_>>();
+            some.iter().for_each(|_| found.push([]));
+            return found;
         }
         progress.advance(some.len() as u64);
         let mut session = finder.session();
-        indices.map(|index| find(&mut session, index)).collect()
+        (run * RUN..).take(some.len()).for_each(|index| found.push(find(&mut session, index)));
+        found
     };
-    texels.par_chunks(RUN).enumerate().flat_map_iter(of_run).collect()
+    let runs: Vec<FoundSpans> = texels.par_chunks(RUN).enumerate().map(of_run).collect();
+    FoundSpans::joined(runs)
 }
 
 /// When each of some parts alone hides the sun from a point that faces it.

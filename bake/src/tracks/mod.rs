@@ -121,6 +121,20 @@ impl FoundSpans {
         self.first.push(self.spans.len() as u32);
     }
 
+    /// The texels of several lists, one list's after the other's.
+    pub fn joined(lists: Vec<Self>) -> Self {
+        let count = |of: fn(&Self) -> usize| lists.iter().map(of).sum::<usize>();
+        let mut all = Self { first: Vec::with_capacity(count(|l| l.first.len()) + 1), spans: Vec::new() };
+        all.spans.reserve_exact(count(|list| list.spans.len()));
+        all.first.push(0);
+        for list in lists {
+            let before = all.spans.len() as u32;
+            all.first.extend(list.first[1..].iter().map(|first| before + first));
+            all.spans.extend(list.spans);
+        }
+        all
+    }
+
     /// Of a texel.
     pub fn of_texel(&self, texel: usize) -> &[FoundSpan] {
         &self.spans[self.first[texel] as usize..self.first[texel + 1] as usize]

@@ -91,7 +91,18 @@ pub fn page_tracks(
 ) -> (Option<PageTracks>, TrackCounts) {
     let is_way_open = |texel: usize, way: usize| shade.walls.is_none_or(|codes| is_open(codes[texel][way]));
     let linked = Linked { size: shade.size, source: shade.source, is_open: &is_way_open };
-    let texels = texels_with_tracks(shade, &linked);
+    let (all, counts) = kept_spans(finder, shade, &linked, progress);
+    ((counts.texels > 0).then(|| number_tracks(&all, &linked)), counts)
+}
+
+/// The spans of all texels of a page.
+fn kept_spans(
+    finder: &OccluderFinder,
+    shade: &PageShade,
+    linked: &Linked,
+    progress: &dyn Progress,
+) -> (FoundSpans, TrackCounts) {
+    let texels = texels_with_tracks(shade, linked);
     let least_t = LEAST_SPAN * shade.width_t;
     let hiders = |session: &mut OccluderSession, texel: u32, point: &SurfacePoint| match shade.hiders {
         Some(hiders) => (shade.lit_times(texel as usize), hiders(texel)),
@@ -99,10 +110,9 @@ pub fn page_tracks(
     };
     let &PageShade { point, size, walls, .. } = shade;
     let found = find_spans(&SpanSearch { finder, point, hiders: &hiders, size, walls, least_t }, &texels, progress);
-    let worth = Worth::new(shade, &linked, &texels, &found);
+    let worth = Worth::new(shade, linked, &texels, &found);
     let kept = Kept { shade, texels: &texels, found: &found, worth: &worth, least: worth.least(shade, &found) };
-    let (all, counts) = kept.with_merged(&linked);
-    ((counts.texels > 0).then(|| number_tracks(&all, &linked)), counts)
+    kept.with_merged(linked)
 }
 
 /// The spans that a page stores.
