@@ -50,6 +50,12 @@ impl Footprint {
         Self { texels: array::from_fn(texel), fraction: point - low, reach: None }
     }
 
+    /// The texel that the point lies on.
+    pub fn nearest(&self) -> usize {
+        let is_far = self.fraction.cmpge(DVec2::splat(0.5));
+        self.texels[usize::from(is_far.x) + 2 * usize::from(is_far.y)]
+    }
+
     /// Weights of the texels, in their order.
     pub fn weights(&self) -> [f64; 4] {
         let DVec2 { x, y } = self.fraction;
@@ -115,6 +121,7 @@ mod tests {
         assert_eq!(between.texels, [1, 2, 5, 6]);
         assert_eq!(between.weights(), [0.125, 0.125, 0.375, 0.375]);
         assert_eq!(between.blend(|texel| texel as f32), 4.5);
+        assert_eq!((at_centre.nearest(), between.nearest()), (1, 6));
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub(super) fn sentences(report: &CostReport) -> Vec<String> {
     let sentences = [
         standard(report),
         presets(report),
+        filters(report),
         density(report),
         lanes(report),
         error_sources(report),
@@ -50,6 +51,22 @@ fn presets(report: &CostReport) -> Option<String> {
         if row.is_measured() { against(sweep, name, from) } else { why() }
     };
     let sentences: Vec<String> = ["--preset draft", "--preset final"].into_iter().filter_map(sentence).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
+}
+
+/// What other filters gain, and tracks.
+fn filters(report: &CostReport) -> Option<String> {
+    let sweep = report.sweep("filters")?;
+    let from = sweep.measured("--filter bilinear")?;
+    let same_set = |name: &str| {
+        let row = sweep.measured(name)?;
+        Some(format!("`{name}` draws the same set and {}.", change(from.sun_min.as_ref()?, row.sun_min.as_ref()?)))
+    };
+    let tracks = sweep.rows.iter().find(|row| row.name == "--tracks").and_then(|row| match row.is_measured() {
+        true => against(sweep, "--tracks", from),
+        false => row.note.as_ref().map(|note| format!("`--tracks`: {note}.")),
+    });
+    let sentences: Vec<String> = [same_set("--filter sharp"), tracks].into_iter().flatten().collect();
     (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 

@@ -1,23 +1,42 @@
-//! What a set shows at points of surfaces, evaluated as a runtime does: at four texels, then blended, and no more than
-//! the share of the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
+//! What a set shows at points of surfaces, evaluated as a runtime does: by each filter of its stored times, and no more
+//! than the share of the disc that is above the surface's plane. The runtime's `playback.rs` is the twin.
 
 use super::error::CostError;
 use super::metric;
 use super::truth::{GroundTruth, SurfaceSample};
 use crate::atlas::{Atlas, Footprint};
 use crate::disk::read::BakedSet;
-use crate::maps::{Bits, LaneMaps, PageMaps, decode_share, soft_visibility};
+use crate::maps::{Bits, LaneMaps, PageMaps, decode_share, edge_sample, sharpened, soft_visibility};
 use crate::scene::{Geometry, LoadLimits, Scene};
 use crate::sun::SunPath;
+use crate::tracks::tracked_visibility;
 use rayon::prelude::*;
 
 /// Largest distance of a triangle from where it was, as a share of the scene's half size.
 const MOST_MOVED: f64 = 1e-4;
 
+/// How stored times are filtered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Filter {
+    /// The nearest texel is evaluated.
+    Nearest,
+    /// Four texels are evaluated, and blended.
+    Bilinear,
+    /// Distances in time from edges are blended, and evaluated.
+    Sharp,
+    /// Times are blended occluder by occluder, and evaluated.
+    Tracks,
+}
+
+impl Filter {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Nearest, Self::Bilinear, Self::Sharp, Self::Tracks];
+}
+
 /// Errors of a set at each point.
 pub(super) struct PlaybackErrors {
-    /// Of the sun, as path time.
-    pub sun_t: Vec<f64>,
+    /// Of the sun, as path time, by each filter that the set allows.
+    pub sun_t: Vec<(Filter, Vec<f64>)>,
     /// Of ambient visibility; none where the set has none.
     pub ambient: Option<Vec<f64>>,
 }
@@ -50,11 +69,16 @@ impl PlayedMaps<'_> {
     /// Errors at points; of each point, its page and the texels that it reads.
     pub fn errors(&self, truth: &GroundTruth, blends: &[(usize, Footprint)]) -> PlaybackErrors {
         let read_points = || truth.points.par_iter().zip(blends);
-        let sun_t = read_points().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
-            let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend));
-            metric::mean_difference_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
-        });
-        let sun_t = sun_t.collect();
+        let sun_errors = |filter: Filter| {
+            let sun_t = read_points().zip(&truth.sun).map(|((place, (page, blend)), true_sun)| {
+                let shown = self.path.map(|path| self.sun(&self.pages[*page], path, place, blend, filter));
+                metric::mean_difference_t(&shown.unwrap_or_else(|| vec![0.0; true_sun.len()]), true_sun)
+            });
+            (filter, sun_t.collect())
+        };
+        let has_tracks = self.pages.iter().any(|page| page.tracks.is_some());
+        let filters = Filter::ALL.into_iter().filter(|filter| *filter != Filter::Tracks || has_tracks);
+        let sun_t = filters.map(sun_errors).collect();
         let ambient = read_points().zip(&truth.ambient).map(|((place, (page, blend)), true_ambient)| {
             Some(f64::from((played_ambient(&self.pages[*page], place, blend)? - true_ambient).abs()))
         });
@@ -62,7 +86,14 @@ impl PlayedMaps<'_> {
     }
 
     /// Visible share of the disc at the point's moments.
-    fn sun(&self, page: &PageMaps, path: &SunPath, place: &SurfaceSample, blend: &Footprint) -> Vec<f32> {
+    fn sun(
+        &self,
+        page: &PageMaps,
+        path: &SunPath,
+        place: &SurfaceSample,
+        blend: &Footprint,
+        filter: Filter,
+    ) -> Vec<f32> {
         let inverse_angular_diameter = 0.5 / path.angular_radius_rad.max(1e-9);
         let geometric_normal = place.geometric_normal();
         let chords: Vec<f32> = page.lanes.iter().map(|lane| lane.lane.chord(path.angular_radius_rad) as f32).collect();
@@ -72,14 +103,22 @@ impl PlayedMaps<'_> {
             if share <= 0.0 {
                 return 0.0;
             }
-            let width_t = path.width_t(t) as f32;
-            let of_texel = |texel: usize| -> f32 {
-                let of_lane = |(lane, chord): (&LaneMaps, &f32)| {
-                    lane.lane.weight as f32 * soft_visibility(&lane.layers, texel, self.bits, t as f32, width_t * chord)
-                };
-                page.lanes.iter().zip(&chords).map(of_lane).sum()
+            let (t, width_t) = (t as f32, path.width_t(t) as f32);
+            let of_lanes = |of_lane: &dyn Fn(&LaneMaps, f32) -> f32| -> f32 {
+                let lanes = page.lanes.iter().zip(&chords);
+                lanes.map(|(lane, chord)| lane.lane.weight as f32 * of_lane(lane, width_t * chord)).sum()
             };
-            share.min(blend.blend(of_texel))
+            let of_texel =
+                |texel| of_lanes(&|lane, width_t| soft_visibility(&lane.layers, texel, self.bits, t, width_t));
+            let seen = match (filter, &page.tracks) {
+                (Filter::Nearest, _) => of_texel(blend.nearest()),
+                (Filter::Bilinear, _) => blend.blend(of_texel),
+                (Filter::Tracks, Some(tracks)) => tracked_visibility(tracks, blend, t, width_t),
+                (Filter::Sharp | Filter::Tracks, _) => of_lanes(&|lane, width_t| {
+                    sharpened(blend.blend(|texel| edge_sample(&lane.layers, texel, self.bits, t, width_t)))
+                }),
+            };
+            share.min(seen)
         };
         metric::moments(place.start).map(at).collect()
     }

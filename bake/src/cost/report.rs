@@ -97,7 +97,7 @@ pub struct CostReference {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Sweep {
-    /// Which one: `presets`, `sizes`, `disc`, `engines`, `bits`, `layers`, `lanes` or `sky`.
+    /// Which one: `presets`, `filters`, `sizes`, `disc`, `engines`, `bits`, `layers`, `lanes` or `sky`.
     pub id: String,
     /// Its title.
     pub title: String,
@@ -131,7 +131,7 @@ pub struct CostRow {
     pub seconds: Option<f64>,
     /// Bytes of all files of the set; null where none were written.
     pub disk_bytes: Option<u64>,
-    /// Bytes on the GPU of what was varied: of a whole bake, all its maps.
+    /// Bytes on the GPU of what was varied: of a whole bake, all its maps; of `--tracks`, those that it draws.
     pub gpu_bytes: Option<u64>,
     /// Texels that stand for a point of a surface; null for settings at texels.
     pub texels: Option<u64>,

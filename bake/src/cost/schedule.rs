@@ -9,7 +9,7 @@ use super::budget::Budget;
 use super::error::CostError;
 use super::knee::knee;
 use super::metric::{MOMENTS, summary};
-use super::playback;
+use super::playback::{self, Filter};
 use super::report::{CostReference, CostRow, How, Sweep};
 use super::settings::CostSettings;
 use super::sparse_bake::sparse_bake;
@@ -18,9 +18,9 @@ use super::truth::{self, GroundTruth};
 use super::workload::Workload;
 use crate::disk::manifest::{Manifest, StepSeconds};
 use crate::disk::read;
-use crate::maps::Bits;
+use crate::maps::{Bits, PageMaps};
 use crate::progress::Progress;
-use crate::settings::{BakeSettings, EngineChoice};
+use crate::settings::{BakeSettings, EngineChoice, TrackChoice};
 use crate::{BakeError, bake};
 use std::path::{Path, PathBuf};
 
@@ -34,6 +34,8 @@ const TRUTH_SHARE: f64 = 0.1;
 const WHOLE_SHARE: f64 = 0.4;
 /// How many times as long a scattered point takes as one among its neighbours.
 const SCATTERED: f64 = 2.0;
+/// Time of finding tracks, over that of a lane.
+const TRACKS: f64 = 0.5;
 /// Seconds of a texel besides its engine and its rays: sampling, encoding, writing.
 const TEXEL_S: f64 = 3e-6;
 
@@ -51,12 +53,15 @@ struct Job {
 /// What a job measures: a whole bake, or one setting at texels.
 #[derive(Clone)]
 enum Measurement {
-    Bake(Box<BakeSettings>),
+    Bake(Box<BakeSettings>, Filter),
     Engine(EngineChoice),
     Stored(Bits, usize),
     Lanes(usize),
     Sky(u32),
 }
+
+/// What one bake shows by each filter that it allows.
+type FilteredRows = Vec<(Filter, CostRow)>;
 
 /// All measurements of a scene, and what predicts their times.
 pub(super) struct Schedule<'a> {
@@ -68,8 +73,8 @@ pub(super) struct Schedule<'a> {
     sweeps: Option<TexelSweeps<'a>>,
     truth: Option<GroundTruth>,
     jobs: Vec<Job>,
-    /// Bakes that were measured. Settings that occur in several sweeps are baked once.
-    baked: Vec<(BakeSettings, CostRow)>,
+    /// Bakes that were measured, by each filter. Settings that occur in several sweeps are baked once.
+    baked: Vec<(BakeSettings, FilteredRows)>,
     /// Measured over predicted time of a texel: of the standard preset or, before it was baked, of the last bake.
     correction: f64,
     /// Whether the correction is that of the standard preset.
@@ -130,11 +135,14 @@ impl<'a> Schedule<'a> {
 
     fn run(&mut self, name: &str, curve: &str, measurement: &Measurement) -> Result<CostRow, CostError> {
         let stopped = || CostRow::not_run(name, "stopped: it took longer than predicted, and the budget was spent");
-        if let Measurement::Bake(settings) = measurement {
-            if let Some((_, row)) = self.baked.iter().find(|(baked, _)| baked == settings.as_ref()) {
-                return Ok(CostRow { name: name.into(), ..row.clone() });
-            }
-            return Ok(self.whole_or_sparse_bake(name, settings)?.unwrap_or_else(stopped));
+        if let Measurement::Bake(settings, filter) = measurement {
+            let known = self.baked.iter().find(|(baked, _)| baked == settings.as_ref());
+            let rows = match known {
+                Some((_, rows)) => Some(rows.clone()),
+                None => self.whole_or_sparse_bake(settings)?,
+            };
+            let row = rows.map(|rows| row_of(&rows, *filter));
+            return Ok(row.map_or_else(stopped, |row| CostRow { name: name.into(), ..row }));
         }
         let Some(predicted_s) = self.predicted_s(measurement) else { return Ok(stopped()) };
         let row = match self.budget.refusal(predicted_s) {
@@ -149,7 +157,7 @@ impl<'a> Schedule<'a> {
         let layer_cap = self.settings.preset(BakeSettings::standard).layer_cap;
         let (sweeps, budget) = (self.sweeps.as_mut()?, self.budget);
         match measurement {
-            Measurement::Bake(_) => None,
+            Measurement::Bake(..) => None,
             Measurement::Engine(choice) => sweeps.engine(*choice, layer_cap, budget),
             Measurement::Stored(bits, layers) => Some(sweeps.stored(*bits, *layers)),
             Measurement::Lanes(count) => sweeps.lanes(*count, layer_cap, budget),
@@ -158,66 +166,83 @@ impl<'a> Schedule<'a> {
     }
 
     /// A whole bake if there is time for it, or else a sparse bake. None if it was stopped.
-    fn whole_or_sparse_bake(&mut self, name: &str, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+    fn whole_or_sparse_bake(&mut self, settings: &BakeSettings) -> Result<Option<FilteredRows>, CostError> {
         let Some(predicted_s) = self.bake_s(settings) else { return Ok(None) };
         let refusal = self.budget.refusal(predicted_s / WHOLE_SHARE);
-        let row = match refusal {
+        let rows = match refusal {
             None => self.whole_bake(settings)?,
             Some(_) => self.sparse_bake(settings)?,
         };
-        let row = row.map(|row| CostRow { name: name.into(), predicted_s: Some(predicted_s), ..row });
-        self.baked.extend(row.iter().filter(|row| row.is_measured()).map(|row| (settings.clone(), row.clone())));
-        Ok(row)
+        let Some(mut rows) = rows else { return Ok(None) };
+        rows.iter_mut().for_each(|(_, row)| row.predicted_s = Some(predicted_s));
+        if rows.iter().all(|(_, row)| row.is_measured()) {
+            self.baked.push((settings.clone(), rows.clone()));
+        }
+        Ok(Some(rows))
     }
 
     /// Bakes, compares, and removes the set.
-    fn whole_bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+    fn whole_bake(&mut self, settings: &BakeSettings) -> Result<Option<FilteredRows>, CostError> {
         let Some(truth) = &self.truth else { return Ok(None) };
         let folder = self.work_folder.join("baked");
         let manifest = match bake(&self.workload.scene_file, &folder, true, settings, self.budget) {
             Ok(report) => report.manifest,
             Err(BakeError::Cancelled) => return Ok(None),
-            Err(error @ BakeError::Memory { .. }) => {
-                return Ok(Some(CostRow::not_run("", &format!("not run: {error}"))));
-            }
+            Err(error @ BakeError::Memory { .. }) => return Ok(Some(not_run(&format!("not run: {error}")))),
             Err(error) => return Err(error.into()),
         };
         let set = read::read(&folder)?;
         let errors = self.workload.on_threads(|| playback::errors(&set, truth, self.workload.scene()));
         // If this fails, the folder around it is removed later.
         let _ = std::fs::remove_dir_all(&folder);
-        let row = CostRow {
-            note: page_note(&manifest, settings),
-            seconds: Some(total_s(&manifest.stats.seconds)),
-            disk_bytes: Some(manifest.stats.bytes),
-            gpu_bytes: Some(set.pages.iter().map(|page| page.gpu_bytes(set.bits)).sum()),
-            texels: Some(manifest.stats.texels),
-            ..self.with_errors(How::Baked, errors?)
-        };
+        let gpu_bytes = |of: fn(&PageMaps, Bits) -> u64| set.pages.iter().map(|page| of(page, set.bits)).sum::<u64>();
+        let [of_times, with_tracks] = [PageMaps::gpu_bytes, PageMaps::gpu_bytes_with_tracks].map(gpu_bytes);
+        let rows = self.with_errors(How::Baked, errors?).into_iter().map(|(filter, row)| {
+            let row = CostRow {
+                note: page_note(&manifest, settings),
+                seconds: Some(total_s(&manifest.stats.seconds)),
+                disk_bytes: Some(manifest.stats.bytes),
+                gpu_bytes: Some(if filter == Filter::Tracks { with_tracks } else { of_times }),
+                texels: Some(manifest.stats.texels),
+                ..row
+            };
+            (filter, row)
+        });
+        let rows = rows.collect();
         self.correct(settings, &manifest);
-        Ok(Some(row))
+        Ok(Some(rows))
     }
 
     /// Bakes the texels that are read, and predicts the time of all.
-    fn sparse_bake(&mut self, settings: &BakeSettings) -> Result<Option<CostRow>, CostError> {
+    fn sparse_bake(&mut self, settings: &BakeSettings) -> Result<Option<FilteredRows>, CostError> {
         let Some((truth, sparse_s)) = self.truth.as_ref().zip(self.sparse_bake_s(settings)) else { return Ok(None) };
         if let Some(why) = self.budget.refusal(sparse_s) {
-            return Ok(Some(CostRow::not_run("", &why)));
+            return Ok(Some(not_run(&why)));
+        }
+        if settings.tracks != TrackChoice::Off {
+            return Ok(Some(not_run("not run: tracks need whole pages, and these do not fit the budget")));
         }
         let Some(found) = sparse_bake(self.workload, truth, settings, self.budget)? else { return Ok(None) };
-        Ok(Some(CostRow {
-            note: Some("texels around the points only; time predicted".into()),
-            seconds: self.bake_s_of(settings, found.texels as f64),
-            gpu_bytes: Some(found.gpu_bytes),
-            texels: Some(found.texels),
-            ..self.with_errors(How::Sampled, found.errors)
-        }))
+        let rows = self.with_errors(How::Sampled, found.errors).into_iter().map(|(filter, row)| {
+            let row = CostRow {
+                note: Some("texels around the points only; time predicted".into()),
+                seconds: self.bake_s_of(settings, found.texels as f64),
+                gpu_bytes: Some(found.gpu_bytes),
+                texels: Some(found.texels),
+                ..row
+            };
+            (filter, row)
+        });
+        Ok(Some(rows.collect()))
     }
 
-    fn with_errors(&self, how: How, errors: playback::PlaybackErrors) -> CostRow {
-        let minutes = errors.sun_t.into_iter().map(|t| t * self.workload.path().duration_min).collect();
+    fn with_errors(&self, how: How, errors: playback::PlaybackErrors) -> FilteredRows {
         let ambient = errors.ambient.and_then(summary);
-        CostRow { how, note: None, sun_min: summary(minutes), ambient, ..CostRow::not_run("", "") }
+        let rows = errors.sun_t.into_iter().map(|(filter, sun_t)| {
+            let minutes = sun_t.into_iter().map(|t| t * self.workload.path().duration_min).collect();
+            (filter, CostRow { how, note: None, sun_min: summary(minutes), ambient, ..CostRow::not_run("", "") })
+        });
+        rows.collect()
     }
 
     /// Corrects predictions by the time that a bake's texels took.
@@ -238,7 +263,7 @@ impl<'a> Schedule<'a> {
         let sweeps = self.sweeps.as_ref()?;
         let sun_s = |which: usize| sweeps.sun_s[which].unwrap_or(sweeps.exact_s / 60.0);
         Some(match measurement {
-            Measurement::Bake(settings) => self.bake_s(settings)?,
+            Measurement::Bake(settings, _) => self.bake_s(settings)?,
             Measurement::Engine(EngineChoice::Exact) => 3.0 * sweeps.exact_s,
             Measurement::Engine(EngineChoice::Rays(count)) => sun_s(0) * *count as f64,
             Measurement::Engine(EngineChoice::Bisect(count)) => sun_s(1) * *count as f64,
@@ -253,7 +278,8 @@ impl<'a> Schedule<'a> {
         let sweeps = self.sweeps.as_ref()?;
         let rays = settings.ambient.map_or(0, |request| request.estimate.rays);
         let lanes = settings.lane_count as f64;
-        Some(lanes * (sweeps.exact_texel_s() + TEXEL_S) + f64::from(rays) * sweeps.sky_ray_s)
+        let tracks = if settings.tracks == TrackChoice::Off { 0.0 } else { TRACKS };
+        Some((lanes + tracks) * (sweeps.exact_texel_s() + TEXEL_S) + f64::from(rays) * sweeps.sky_ray_s)
     }
 
     /// Predicted seconds of a bake of this many texels.
@@ -307,8 +333,9 @@ const TEXELS: &str = "texels";
 const SEEN: &str = "minutes of sun wrong at a point of a surface, from everything that a bake loses";
 
 /// Id, title, what it is measured on, and which error.
-const SWEEPS: [[&str; 4]; 8] = [
+const SWEEPS: [[&str; 4]; 9] = [
     ["presets", "Presets", BAKES, SEEN],
+    ["filters", "Filters: standard, drawn in other ways, and with shadow tracks", BAKES, SEEN],
     ["sizes", "Texels: standard with other page sizes", BAKES, SEEN],
     ["disc", "Lanes: standard with more of them", BAKES, SEEN],
     ["engines", "Engines", TEXELS, "minutes in which a texel's times differ from its exact ones"],
@@ -329,7 +356,7 @@ fn sweep_of([id, title, measured_on, meaning]: [&str; 4], rows: Vec<CostRow>) ->
         rows.iter().filter(|row| rows.first().is_some_and(|first| first.curve == row.curve)).collect();
     let pair = |row: &&CostRow| Some((row.seconds?, row.error()?.mean));
     let pairs: Vec<(f64, f64)> = curve.iter().map(|row| pair(row).unwrap_or((f64::NAN, f64::NAN))).collect();
-    let knee = if matches!(id, "bits" | "layers") { None } else { knee(&pairs) };
+    let knee = if matches!(id, "bits" | "layers" | "filters") { None } else { knee(&pairs) };
     let knee = knee.map(|index| curve[index].name.clone());
     Sweep { id: id.into(), title: title.into(), measured_on: measured_on.into(), meaning: meaning.into(), rows, knee }
 }
@@ -347,15 +374,22 @@ fn all_jobs(settings: &CostSettings) -> Vec<Job> {
         ("final", BakeSettings::final_quality, 20),
     ];
     for (name, of, rank) in presets {
-        add("presets", "", rank, format!("--preset {name}"), Measurement::Bake(Box::new(settings.preset(of))));
+        add("presets", "", rank, format!("--preset {name}"), blended(settings.preset(of)));
     }
+    let filters = [("nearest", Filter::Nearest), ("bilinear", Filter::Bilinear), ("sharp", Filter::Sharp)];
+    for (name, filter) in filters {
+        let measurement = Measurement::Bake(Box::new(standard.clone()), filter);
+        add("filters", "", 2, format!("--filter {name}"), measurement);
+    }
+    let tracked = BakeSettings { tracks: TrackChoice::Auto, ..standard.clone() };
+    add("filters", "", 20, "--tracks".into(), Measurement::Bake(Box::new(tracked), Filter::Tracks));
     for (page_size_texels, rank) in [(256, 25), (512, 24), (1024, 21), (2048, 20), (4096, 23)] {
         let sized = BakeSettings { page_size_texels, ..standard.clone() };
-        add("sizes", "", rank, format!("--size {page_size_texels}"), Measurement::Bake(Box::new(sized)));
+        add("sizes", "", rank, format!("--size {page_size_texels}"), blended(sized));
     }
     for (lane_count, rank) in [(1, 20), (3, 22), (5, 26)] {
         let laned = BakeSettings { lane_count, ..standard.clone() };
-        add("disc", "", rank, format!("--lanes {lane_count}"), Measurement::Bake(Box::new(laned)));
+        add("disc", "", rank, format!("--lanes {lane_count}"), blended(laned));
     }
     for count in (4..=12).map(|bits| 1 << bits) {
         let rank = if count > 512 { 40 } else { 10 };
@@ -379,6 +413,22 @@ fn all_jobs(settings: &CostSettings) -> Vec<Job> {
         add("sky", "", rank, format!("--ao-rays {rays}"), Measurement::Sky(rays));
     }
     jobs
+}
+
+/// A bake that is drawn as usual.
+fn blended(settings: BakeSettings) -> Measurement {
+    Measurement::Bake(Box::new(settings), Filter::Bilinear)
+}
+
+/// What a bake shows by a filter.
+fn row_of(rows: &FilteredRows, filter: Filter) -> CostRow {
+    let row = rows.iter().find(|(of, row)| *of == filter || !row.is_measured()).map(|(_, row)| row.clone());
+    row.unwrap_or_else(|| CostRow::not_run("", "no texel needs a track: the other filters draw its shadows as well"))
+}
+
+/// The same why for every filter.
+fn not_run(why: &str) -> FilteredRows {
+    vec![(Filter::Bilinear, CostRow::not_run("", why))]
 }
 
 /// Most layers that a set can have.

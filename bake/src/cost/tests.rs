@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::metric::disc_visibility;
-use super::playback::{self, PlayedMaps};
+use super::playback::{self, Filter, PlayedMaps};
 use super::settings::CostSettings;
 use super::sparse_bake::sparse_bake;
 use super::truth::{GroundTruth, SurfaceSample};
@@ -14,9 +14,11 @@ use crate::scene::Scene;
 use crate::settings::{BakeSettings, SunRequest};
 use crate::sun::{DayOutcome, DayRequest, SunPath, day};
 use crate::testing::{SceneBuilder, block, floor};
+use crate::tracks::{PageTracks, TrackSpan};
 use crate::visibility::Intervals;
 use crate::{bake, disk, glb};
 use glam::{DVec2, DVec3, Vec2, Vec3};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 fn summer() -> DayRequest {
@@ -32,6 +34,11 @@ fn summer_path() -> SunPath {
 
 /// Minutes of error at a point amid four texels with these times, given the true times.
 fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
+    minutes_by_filter(texels, None, truth)[&Filter::Bilinear]
+}
+
+/// The same by each filter.
+fn minutes_by_filter(texels: [&[[f64; 2]]; 4], tracks: Option<PageTracks>, truth: &[[f64; 2]]) -> HashMap<Filter, f64> {
     let path = summer_path();
     let surface =
         SurfacePoint { position_m: DVec3::ZERO, normal: DVec3::Y, is_double_sided: false, triangle: 0, smooth: None };
@@ -44,10 +51,11 @@ fn minutes_wrong(texels: [&[[f64; 2]]; 4], truth: &[[f64; 2]]) -> f64 {
         encoder.set(texel, &Intervals::from_unsorted(lit.to_vec()));
     }
     let lanes = vec![LaneMaps { lane: Lane::CENTRE, layers: encoder.finish() }];
-    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None, walls: None, tracks: None };
+    let page = PageMaps { width: 2, height: 2, lanes, lamp: None, ambient: None, walls: None, tracks };
     let blend = Footprint { texels: [0, 1, 2, 3], fraction: DVec2::splat(0.5), reach: None };
     let played = PlayedMaps { pages: &[page], bits: Bits::Sixteen, path: Some(&path) };
-    played.errors(&truth, &[(0, blend)]).sun_t[0] * path.duration_min
+    let minutes = |(filter, errors_t): (Filter, Vec<f64>)| (filter, errors_t[0] * path.duration_min);
+    played.errors(&truth, &[(0, blend)]).sun_t.into_iter().map(minutes).collect()
 }
 
 #[test]
@@ -83,6 +91,30 @@ fn one_wrong_texel_counts_by_its_weight() {
         let minutes = minutes_wrong(texels, day);
         assert!((minutes - expected).abs() < 0.5, "{minutes} for {expected}");
     }
+}
+
+/// An edge passes two texels an hour after the others: in the middle it passes half an hour after. Evaluated at texels,
+/// half of the disc is wrong for that hour, less while the true edge crosses it; the nearest is wrong for half an hour.
+#[test]
+fn an_edge_between_texels_is_where_sharp_filters_have_it() {
+    let hour = 60.0 / summer_path().duration_min;
+    let until = |hours: f64| [[0.2, 0.6 + hours * hour]];
+    let [early, middle, late] = [0.0, 0.5, 1.0].map(until);
+    let codes = |from: f64, to: f64| [from, to].map(|t| Bits::Sixteen.encode(t));
+    let spans = [0.6, 0.6 + hour].map(|end| {
+        let [[_, night], [end, last]] = [codes(0.0, 0.2), codes(end, 1.0)];
+        [TrackSpan { track: 0, start: 0, end: night }, TrackSpan { track: 1, start: end, end: last }]
+    });
+    let tracks = PageTracks { ranges: [0, 2, 0, 2].map(|first| [first, 2]).to_vec(), spans: spans.concat() };
+    let found = minutes_by_filter([&early, &late, &early, &late], Some(tracks), &middle);
+    let width_min = summer_path().width_t(0.6) * summer_path().duration_min;
+    let bilinear = 30.0 - 0.25 * width_min;
+    let expected = [(Filter::Nearest, 30.0), (Filter::Bilinear, bilinear), (Filter::Sharp, 0.0), (Filter::Tracks, 0.0)];
+    for (filter, expected) in expected {
+        assert!((found[&filter] - expected).abs() < 0.2, "{filter:?}: {} for {expected}", found[&filter]);
+    }
+    // Without tracks there is no such row.
+    assert!(!minutes_by_filter([&early; 4], None, &early).contains_key(&Filter::Tracks));
 }
 
 /// The scene as a file.
@@ -128,9 +160,11 @@ fn an_open_floor_has_next_to_no_error() {
     let scene = SceneBuilder::new().soup(&floor(Vec2::ZERO, Vec2::splat(10.0), 0.0)).build();
     let [whole, _] = both_ways(&scene, 1);
     let duration_min = summer_path().duration_min;
-    let worst = whole.sun_t.iter().fold(0.0, |worst: f64, t| worst.max(t * duration_min));
+    let bilinear = whole.sun_t.iter().find(|(filter, _)| *filter == Filter::Bilinear);
+    let sun_t = &bilinear.expect("sets are blended").1;
+    let worst = sun_t.iter().fold(0.0, |worst: f64, t| worst.max(t * duration_min));
     // What remains is sunrise and sunset, where one lane and the plane's share of the disc differ from seventeen lanes.
-    assert!(whole.sun_t.len() == 300 && worst < 1.5, "{worst}");
+    assert!(sun_t.len() == 300 && worst < 1.5, "{worst}");
     assert!(whole.ambient.unwrap().iter().all(|&error| error < 1e-4));
 }
 
@@ -145,6 +179,8 @@ fn a_sparse_bake_shows_what_the_whole_bake_shows() {
         let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
         let [a, b] = [whole.ambient.unwrap(), sampled.ambient.unwrap()].map(|errors| mean(&errors));
         assert!((a - b).abs() < 0.004, "{a} {b}");
-        assert!(mean(&whole.sun_t) > 1e-4, "a block casts a shadow that texels this large cannot show");
+        for (filter, errors_t) in &whole.sun_t {
+            assert!(mean(errors_t) > 1e-4, "{filter:?}: a block casts a shadow that texels this large cannot show");
+        }
     }
 }

@@ -77,4 +77,12 @@ impl PageMaps {
     pub fn gpu_bytes(&self, bits: Bits) -> u64 {
         u64::from(self.width) * u64::from(self.height) * self.gpu_texel(bits).bytes()
     }
+
+    /// The same where its tracks, if it has any, take the place of the sun's times.
+    pub fn gpu_bytes_with_tracks(&self, bits: Bits) -> u64 {
+        let Some(tracks) = &self.tracks else { return self.gpu_bytes(bits) };
+        let lamp_layers = self.lamp.as_ref().map_or(0, Vec::len) as u32;
+        let texel = GpuTexel { layers: lamp_layers, ..self.gpu_texel(bits) };
+        u64::from(self.width) * u64::from(self.height) * texel.bytes() + tracks.gpu_bytes()
+    }
 }

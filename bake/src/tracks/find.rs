@@ -52,7 +52,8 @@ pub fn find_spans(search: &SpanSearch, texels: &[u32], progress: &dyn Progress) 
     });
     let mut place = vec![ABSENT; texels.iter().max().map_or(0, |&last| last as usize + 1)];
     texels.iter().zip(0..).for_each(|(&texel, index)| place[texel as usize] = index);
-    let cover_of = |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| covers.of_texel(i as usize));
+    let cover_of =
+        |texel: usize| place.get(texel).filter(|&&index| index != ABSENT).map(|&i| covers.of_texel(i as usize));
     of_texels(finder, texels, progress, |session, index| {
         let mut spans = covers.of_texel(index).to_vec();
         let near = around.texels(texels[index] as usize).filter_map(cover_of).flatten();
