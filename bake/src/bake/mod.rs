@@ -155,6 +155,7 @@ fn bake_prepared(
         finder,
         width_t: path.width_t(0.5),
         choice: settings.tracks,
+        slots: 4 * settings.layer_cap,
     });
     let step = BakeStep::Visibility;
     let sun = engine.map(|engine| LightJob { engine, lanes: &lanes, duration_min, step, tracks });

@@ -17,6 +17,8 @@ pub(super) struct TrackJob<'a> {
     pub width_t: f64,
     /// Where tracks are wanted.
     pub choice: TrackChoice,
+    /// Intervals that the layers of a texel hold.
+    pub slots: usize,
 }
 
 /// Takes the intervals of a page's texels in their order, and then finds its tracks.
@@ -90,6 +92,7 @@ impl<'a> TrackBaker<'a> {
             walls: texels.walls,
             width_t: job.width_t,
             choice: job.choice,
+            most_merged: job.slots,
             most_bytes: if job.choice == TrackChoice::Auto { most_bytes } else { u64::MAX },
         };
         page_tracks(job.finder, &shade, progress)

@@ -73,6 +73,9 @@ pub struct PageShade<'a> {
     pub choice: TrackChoice,
     /// Bytes on a GPU that the tracks of the page may take.
     pub most_bytes: u64,
+    /// Most spans of merged shade at a texel without tracks: as many as the page's layers hold, since plain playback
+    /// shows no more.
+    pub most_merged: usize,
 }
 
 impl PageShade<'_> {
@@ -144,7 +147,7 @@ impl Kept<'_> {
                     counts.crowded_texels += u64::from(is_crowded);
                     all.push(list);
                 }
-                None => all.push(merged(self.shade.lit.of_texel(texel))),
+                None => all.push(merged(self.shade.lit.of_texel(texel), self.shade.most_merged)),
             }
         }
         (all, counts)
@@ -289,8 +292,8 @@ fn deep_shade(shade: &PageShade, texel: usize) -> Vec<FoundSpan> {
 }
 
 /// The shade between a texel's lit intervals.
-fn merged(lit: &[FoundSpan]) -> Vec<FoundSpan> {
-    fitted(&between(lit.iter().map(FoundSpan::times)), MOST_SPANS)
+fn merged(lit: &[FoundSpan], most: usize) -> Vec<FoundSpan> {
+    fitted(&between(lit.iter().map(FoundSpan::times)), most.min(MOST_SPANS))
 }
 
 /// Merged shade; of more spans than are stored, that which is wrong for the shortest time.

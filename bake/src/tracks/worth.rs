@@ -72,11 +72,13 @@ impl Worth {
         };
         // Merged shade has its bytes already; what is left for tracks is counted as if they came on top.
         let texels = shade.source.len();
-        let merged = |texel: usize| dark_count(shade.lit.of_texel(shade.source[texel] as usize)) as u64;
+        let most = shade.most_merged.min(MOST_SPANS);
+        let merged = |texel: usize| dark_count(shade.lit.of_texel(texel)).min(most) as u64;
         let has_room = |spans: u64| {
             spans < MOST_PAGE_SPANS as u64 && PageTracks::bytes_of(texels as u64, spans) <= shade.most_bytes
         };
-        let mut spans: u64 = (0..texels).map(merged).sum();
+        let is_own_source = |texel: &usize| shade.source[*texel] as usize == *texel;
+        let mut spans: u64 = (0..texels).into_par_iter().filter(is_own_source).map(merged).sum();
         let counts = (0..self.first.len() - 1).flat_map(|index| parts(found.of_texel(index)).map(<[_]>::len));
         let mut wanted: Vec<(f32, usize)> = self.of_part.iter().copied().zip(counts).collect();
         wanted.retain(|(worth, _)| *worth > least);
@@ -100,5 +102,5 @@ fn of_part(spans: &[FoundSpan], part: u32) -> &[FoundSpan] {
 
 /// How many spans of merged shade a texel has.
 fn dark_count(lit: &[FoundSpan]) -> usize {
-    between(lit.iter().map(FoundSpan::times)).len().min(MOST_SPANS)
+    between(lit.iter().map(FoundSpan::times)).len()
 }
