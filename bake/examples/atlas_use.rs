@@ -72,9 +72,9 @@ fn row(scene: &Scene, geometry: &Geometry, name: &str, edge: u32) -> Result<(), 
     }
     let asked = f64::from(edge).powi(2) * atlas.pages.len() as f64;
     let [mut baked, mut copied] = [0, 0];
-    for (page, &size) in atlas.pages.iter().enumerate() {
+    for page in 0..atlas.pages.len() {
         let samples = sample_page(scene, geometry, &atlas, page as u32);
-        let copies = gutter(size, &samples, settings.padding_texels);
+        let copies = gutter(scene, geometry, &atlas, page as u32, &samples, settings.padding_texels);
         baked += samples.samples.len();
         copied += copies.iter().map(|copy| copy.texel).collect::<HashSet<_>>().len();
     }

@@ -267,8 +267,8 @@ fn nothing_pops_in_time_or_between_quads() {
 
 #[test]
 fn a_bake_finds_the_same_tracks_with_one_thread_and_with_two() {
-    let draft = BakeSettings::draft(SunRequest::Day(request()));
-    let settings = BakeSettings { page_size_texels: 96, ambient: None, tracks: TrackChoice::Auto, ..draft };
+    let standard = BakeSettings::standard(SunRequest::Day(request()));
+    let settings = BakeSettings { page_size_texels: 96, ambient: None, tracks: TrackChoice::Auto, ..standard };
     let baked = |threads| {
         let settings = BakeSettings { threads, ..settings.clone() };
         bake_scene(&fence().scene, &settings, &Silent).expect("a bake")
@@ -293,7 +293,7 @@ fn of_more_shadows_than_a_list_holds_the_least_are_merged() {
     };
     let soup: Vec<[Vec3; 3]> = (0..111).flat_map(wire).collect();
     let settings = BakeSettings {
-        page_size_texels: 64,
+        page_size_texels: 80,
         ambient: None,
         tracks: TrackChoice::On,
         layer_cap: 64,

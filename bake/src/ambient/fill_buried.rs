@@ -35,9 +35,9 @@ impl BuriedTexels {
     }
 
     /// Buried texels beside a visible one, each with the texel whose value it takes, given the ambient visibility of
-    /// all texels. Charts lie at least two texels apart, so covered neighbours belong to the same chart.
-    pub fn sources(&self, visibility: &[f32]) -> Vec<(usize, usize)> {
-        let around = Around::new(self.size, None);
+    /// all texels and the borders of charts that lie side by side.
+    pub fn sources(&self, visibility: &[f32], borders: Option<&[[u8; 2]]>) -> Vec<(usize, usize)> {
+        let around = Around::new(self.size, borders);
         let darkest_neighbour = |texel: usize| {
             let visible = around.texels(texel).filter(|&other| self.texels[other] == TexelKind::Visible);
             visible.min_by(|&a, &b| visibility[a].total_cmp(&visibility[b]))
@@ -50,6 +50,7 @@ impl BuriedTexels {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atlas::OPEN;
 
     #[test]
     fn buried_texels_take_their_darkest_visible_neighbour_and_deeper_ones_stay_0() {
@@ -58,9 +59,14 @@ mod tests {
         for (texel, is_buried) in [(0, false), (1, true), (2, true), (3, true), (4, false)] {
             buried_texels.add(texel, is_buried);
         }
-        assert_eq!(buried_texels.sources(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0]), [(1, 0), (3, 4)]);
+        assert_eq!(buried_texels.sources(&[0.9, 0.0, 0.0, 0.0, 0.3, 1.0], None), [(1, 0), (3, 4)]);
         let mut thin = BuriedTexels::new(size);
         [(0, false), (1, true), (2, false)].iter().for_each(|&(texel, is_buried)| thin.add(texel, is_buried));
-        assert_eq!(thin.sources(&[0.9, 0.0, 0.2, 1.0, 1.0, 1.0]), [(1, 2)], "light would come through the wall");
+        let visibility = [0.9, 0.0, 0.2, 1.0, 1.0, 1.0];
+        assert_eq!(thin.sources(&visibility, None), [(1, 2)], "light would come through the wall");
+        // Another chart's texel says nothing.
+        let mut borders = [[OPEN; 2]; 6];
+        borders[1][0] = 0;
+        assert_eq!(thin.sources(&visibility, Some(&borders)), [(1, 0)]);
     }
 }

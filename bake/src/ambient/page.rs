@@ -54,11 +54,13 @@ impl AmbientPlanes {
 }
 
 impl AmbientPage {
-    /// Lays out estimates, which are in the given order of samples, and fills buried texels.
+    /// Lays out estimates, which are in the given order of samples, and fills buried texels, but not across `borders`,
+    /// which are walls between charts ([`crate::atlas::find_walls`]).
     pub fn new(
         size: PageSize,
         samples: &PageSamples,
         order: &[u32],
+        borders: Option<&[[u8; 2]]>,
         runs: &[Estimates],
         settings: &AmbientSettings,
     ) -> Self {
@@ -87,7 +89,7 @@ impl AmbientPage {
             }
         }
         for side in std::iter::once(&mut front).chain(&mut back) {
-            for (texel, source) in buried_texels.sources(&side.visibility) {
+            for (texel, source) in buried_texels.sources(&side.visibility, borders) {
                 side.copy(texel, source);
             }
         }

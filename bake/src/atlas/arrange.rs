@@ -12,8 +12,9 @@
 //!   requested density.
 //! * Pages are filled largest first, each group going to the emptiest page.
 
-use super::strip::{self, PackShape, Packed};
-use super::tile::{ChartBox, Tile, reference_scale};
+use super::chart_box::{BoxedChart, Gutters, chart_shapes};
+use super::strip::{self, PackShape, Packed, PackedPosition};
+use super::tile::{Tile, reference_scale};
 use super::unwrap::Charts;
 use super::{PageSize, Placement};
 use glam::{DVec2, Vec2};
@@ -80,12 +81,13 @@ struct PieceGroup {
     texels: f64,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 enum PieceKind {
-    /// A chart of a mesh with a single instance.
-    Chart(usize, ChartBox),
-    /// An instance's rectangle: its index in [`AtlasMesh::instances`], and its content's size in texels.
-    Instance(usize, DVec2),
+    /// Charts of a mesh with a single instance.
+    Charts(Vec<BoxedChart>),
+    /// An instance's rectangle: its index in [`AtlasMesh::instances`], its content's size in texels, and the width of
+    /// the gutter around it.
+    Instance(usize, DVec2, u32),
 }
 
 /// The result: everything placed on pages.
@@ -93,7 +95,6 @@ pub(super) struct AtlasPlan {
     pages: Vec<PlannedPage>,
     /// For each mesh, its tile if it has several instances.
     tiles: Vec<Option<Tile>>,
-    padding: u32,
 }
 
 struct PlannedPage {
@@ -112,11 +113,6 @@ pub(super) struct Arrangement<'a> {
 }
 
 impl AtlasMesh {
-    /// Surface area in the scene, over all instances.
-    pub fn area_m2(&self) -> f64 {
-        self.instances.iter().map(|instance| self.area_of_instance_m2(instance)).sum()
-    }
-
     /// Surface area of the instances that have the scene's density, and texels of those that have their own.
     pub fn area_and_own_texels(&self) -> (f64, f64) {
         let add = |(area_m2, texels): (f64, f64), (of_part_m2, own): (f64, Option<f64>)| match own {
@@ -221,7 +217,7 @@ impl Arrangement<'_> {
             Some(PlannedPage { size, pieces, packed })
         };
         let pages = dealt.into_par_iter().map(place_page).collect::<Option<Vec<_>>>()?;
-        Some(AtlasPlan { pages, tiles, padding: self.padding_texels })
+        Some(AtlasPlan { pages, tiles })
     }
 
     /// Tiles, and the groups of pieces to be packed.
@@ -239,38 +235,37 @@ impl Arrangement<'_> {
         let (padding, scales) = (self.padding_texels, what.scales(texels_per_metre));
         let texels_per_metre = texels_per_metre * what.share * self.share;
         let limit_texels = f64::from(self.page_size_texels.saturating_sub(2 * padding).max(1));
-        let rectangles = |contents: Vec<DVec2>| {
+        let rectangles = |contents: Vec<DVec2>, gutter: u32| {
             let piece = |(instance, content): (usize, DVec2)| {
                 let cells = (content - 1e-6).ceil().max(DVec2::ONE);
-                let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * padding));
+                let [width, height] = [cells.x, cells.y].map(|c| (c as u32).saturating_add(2 * gutter));
                 let shape = PackShape::rectangle(width, height, false);
-                vec![Piece { shape, item, kind: PieceKind::Instance(instance, content) }]
+                vec![Piece { shape, item, kind: PieceKind::Instance(instance, content, gutter) }]
             };
             contents.into_iter().enumerate().map(piece).collect()
         };
         match &what.form {
             MeshLayout::FileLayout(given) => {
                 let content = |k: &f64| given.size * given.object_per_uv * k * texels_per_metre;
-                (None, rectangles(scales.iter().map(content).collect()))
+                (None, rectangles(scales.iter().map(content).collect(), padding))
             }
             MeshLayout::Charts(charts) if what.has_loose_charts() => {
-                let piece = |(chart, &size): (usize, &DVec2)| {
-                    let density = match charts.own_density(chart) {
-                        Some(own) => own * what.instances[0].metres_per_unit * what.share * self.share,
-                        None => texels_per_metre * scales[0],
-                    };
-                    let chart_box = ChartBox::new(size, density, limit_texels);
-                    let shape = chart_box.shape(charts, chart, padding);
-                    Piece { shape, item, kind: PieceKind::Chart(chart, chart_box) }
+                let density = |chart: usize| match charts.own_density(chart) {
+                    Some(own) => own * what.instances[0].metres_per_unit * what.share * self.share,
+                    None => texels_per_metre * scales[0],
                 };
-                (None, vec![charts.sizes.iter().enumerate().map(piece).collect()])
+                let gutters = Gutters { padding_texels: padding, is_pinned: true };
+                let shapes = chart_shapes(charts, density, limit_texels, gutters).into_iter();
+                let pieces = shapes.map(|made| Piece { shape: made.shape, item, kind: PieceKind::Charts(made.charts) });
+                (None, vec![pieces.collect()])
             }
             MeshLayout::Charts(charts) => {
-                let reference = reference_scale(charts, &scales, texels_per_metre, padding);
+                let (reference, gutters) = reference_scale(charts, &scales, texels_per_metre, padding);
                 let largest = scales.iter().copied().fold(reference, f64::max);
-                let tile = Tile::new(charts, texels_per_metre * reference, padding, limit_texels * reference / largest);
-                let contents = scales.iter().map(|k| tile.inner * (k.max(reference) / reference)).collect();
-                (Some(tile), rectangles(contents))
+                let limit_texels = limit_texels * reference / largest;
+                let tile = Tile::new(charts, texels_per_metre * reference, limit_texels, gutters);
+                let contents = scales.iter().map(|k| tile.size * (k.max(reference) / reference)).collect();
+                (Some(tile), rectangles(contents, 0))
             }
         }
     }
@@ -300,14 +295,16 @@ impl AtlasPlan {
     /// share: its instance, and the texels a metre that were asked for and that it gets.
     pub fn most_capped(&self, items: &[AtlasMesh]) -> Option<(usize, f64, f64)> {
         let capped = |piece: &Piece| {
-            let PieceKind::Chart(chart, chart_box) = piece.kind else { return None };
+            let PieceKind::Charts(boxed) = &piece.kind else { return None };
             let AtlasMesh { form: MeshLayout::Charts(charts), instances, .. } = &items[piece.item] else { return None };
-            let asked = charts.own_density(chart).or(instances[0].own_density)?;
-            let reached = chart_box.density / instances[0].metres_per_unit;
-            (reached < 0.9 * asked).then_some((instances[0].index, asked, reached))
+            let of_chart = |boxed: &BoxedChart| {
+                let asked = charts.own_density(boxed.chart as usize).or(instances[0].own_density)?;
+                let reached = boxed.content.density / instances[0].metres_per_unit;
+                (reached < 0.9 * asked).then_some((instances[0].index, asked, reached))
+            };
+            least_share(boxed.iter().filter_map(of_chart))
         };
-        let all = self.pages.iter().flat_map(|page| &page.pieces).filter_map(capped);
-        all.min_by(|a, b| (a.2 / a.1).total_cmp(&(b.2 / b.1)))
+        least_share(self.pages.iter().flat_map(|page| &page.pieces).filter_map(capped))
     }
 
     /// Writes the placements of all placed instances; the others are not changed.
@@ -316,15 +313,15 @@ impl AtlasPlan {
             for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
                 let item = &items[piece.item];
                 let page_texels = planned.size.as_dvec2();
-                let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
-                let (instance, scale, offset) = match (piece.kind, &item.form) {
-                    (PieceKind::Chart(..), _) => (0, DVec2::ONE, DVec2::ZERO),
-                    (PieceKind::Instance(instance, content), MeshLayout::FileLayout(given)) => {
+                let corner = |gutter: u32| DVec2::new(f64::from(position.x + gutter), f64::from(position.y + gutter));
+                let (instance, scale, offset) = match (&piece.kind, &item.form) {
+                    (PieceKind::Charts(..), _) => (0, DVec2::ONE, DVec2::ZERO),
+                    (&PieceKind::Instance(instance, content, gutter), MeshLayout::FileLayout(given)) => {
                         let scale = content / given.size;
-                        (instance, scale / page_texels, (corner - given.low * scale) / page_texels)
+                        (instance, scale / page_texels, (corner(gutter) - given.low * scale) / page_texels)
                     }
-                    (PieceKind::Instance(instance, content), MeshLayout::Charts(_)) => {
-                        (instance, content / page_texels, corner / page_texels)
+                    (&PieceKind::Instance(instance, content, gutter), MeshLayout::Charts(_)) => {
+                        (instance, content / page_texels, corner(gutter) / page_texels)
                     }
                 };
                 placements[item.instances[instance].index] =
@@ -353,15 +350,13 @@ impl AtlasPlan {
             MeshLayout::Charts(charts) if item.has_loose_charts() => charts.sizes.len(),
             _ => 0,
         };
-        let mut chart_positions: Vec<_> =
-            items.iter().map(|item| vec![ChartPosition::default(); count(item)]).collect();
+        let mut chart_positions: Vec<_> = items.iter().map(|item| vec![ChartPosition::NOWHERE; count(item)]).collect();
         for planned in &self.pages {
             for (piece, position) in planned.pieces.iter().zip(&planned.packed.positions) {
-                if let PieceKind::Chart(chart, chart_box) = piece.kind {
-                    let corner = DVec2::new(f64::from(position.x), f64::from(position.y)) + f64::from(self.padding);
-                    let page_texels = planned.size.as_dvec2();
-                    chart_positions[piece.item][chart] =
-                        ChartPosition { corner, chart_box, turns: position.turns, page_texels };
+                let PieceKind::Charts(boxed) = &piece.kind else { continue };
+                for &boxed in boxed {
+                    chart_positions[piece.item][boxed.chart as usize] =
+                        ChartPosition { boxed, shape: *position, page_texels: planned.size.as_dvec2() };
                 }
             }
         }
@@ -369,24 +364,26 @@ impl AtlasPlan {
     }
 }
 
+/// Of instances with the density asked for and that reached, the one with the least share.
+fn least_share(all: impl Iterator<Item = (usize, f64, f64)>) -> Option<(usize, f64, f64)> {
+    all.min_by(|a, b| (a.2 / a.1).total_cmp(&(b.2 / b.1)))
+}
+
 /// Position of a chart on its page.
 #[derive(Clone, Copy)]
 struct ChartPosition {
-    corner: DVec2,
-    chart_box: ChartBox,
-    turns: u8,
+    boxed: BoxedChart,
+    /// Of the shape that it lies in.
+    shape: PackedPosition,
     page_texels: DVec2,
 }
 
 impl ChartPosition {
-    fn uv(&self, point: DVec2) -> DVec2 {
-        (self.corner + self.chart_box.texel(point, self.turns)) / self.page_texels
-    }
-}
+    const NOWHERE: Self =
+        Self { boxed: BoxedChart::EMPTY, shape: PackedPosition { x: 0, y: 0, turns: 0 }, page_texels: DVec2::ONE };
 
-impl Default for ChartPosition {
-    fn default() -> Self {
-        let chart_box = ChartBox { density: 0.0, cells: (1, 1), slack: DVec2::ZERO };
-        Self { corner: DVec2::ZERO, chart_box, turns: 0, page_texels: DVec2::ONE }
+    fn uv(&self, point: DVec2) -> DVec2 {
+        let corner = DVec2::new(f64::from(self.shape.x), f64::from(self.shape.y));
+        (corner + self.boxed.texel(point, self.shape.turns)) / self.page_texels
     }
 }

@@ -173,8 +173,6 @@ fn assemble(scene: &Scene, items: &[AtlasMesh], plan: &AtlasPlan) -> Atlas {
         chart_count: items.iter().map(AtlasMesh::chart_count).sum(),
         warnings: Vec::new(),
     };
-    let area_m2: f64 = items.iter().map(AtlasMesh::area_m2).sum();
-    atlas.texels_per_metre =
-        if area_m2 > 0.0 { (measure::covered_texels(scene, &atlas) / area_m2).sqrt() } else { 0.0 };
+    atlas.texels_per_metre = measure::Extent::sum(measure::extents(scene, &atlas)).texels_per_metre();
     atlas
 }

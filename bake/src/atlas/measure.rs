@@ -1,54 +1,81 @@
 //! Measures a finished atlas: covered texels, and warnings about it.
 
 use super::arrange::{AtlasMesh, AtlasPlan, MeshLayout};
+use super::chart_box::is_drawn_together;
 use super::existing::{self, CROWDED_SHARE};
 use super::{Atlas, AtlasSettings, Density, FILE_SET};
 use crate::scene::{Scene, each_once};
 use crate::warning::Warning;
+use glam::DVec2;
 use rayon::prelude::*;
+use std::collections::HashSet;
 
-/// Area of all triangles on all pages, in texels.
-pub(super) fn covered_texels(scene: &Scene, atlas: &Atlas) -> f64 {
-    (0..scene.instances.len())
-        .into_par_iter()
-        .map(|i| texels_of_instance(scene, atlas, i))
-        .collect::<Vec<_>>()
-        .iter()
-        .sum()
+/// Area of a surface in texels and in square metres.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Extent {
+    texels: f64,
+    square_m: f64,
 }
 
-fn texels_of_instance(scene: &Scene, atlas: &Atlas, instance: usize) -> f64 {
+impl Extent {
+    /// The root of texels over area; 0 without area.
+    pub fn texels_per_metre(self) -> f64 {
+        if self.square_m > 0.0 { (self.texels / self.square_m).sqrt() } else { 0.0 }
+    }
+
+    pub fn sum(all: impl IntoIterator<Item = Self>) -> Self {
+        let add = |a: Self, b: Self| Self { texels: a.texels + b.texels, square_m: a.square_m + b.square_m };
+        all.into_iter().fold(Self::default(), add)
+    }
+}
+
+/// The extent of each instance. Charts that were drawn together do not count, unless there are no others: then each of
+/// their texels counts as one.
+pub(super) fn extents(scene: &Scene, atlas: &Atlas) -> Vec<Extent> {
+    (0..scene.instances.len()).into_par_iter().map(|instance| extent(scene, atlas, instance)).collect()
+}
+
+fn extent(scene: &Scene, atlas: &Atlas, instance: usize) -> Extent {
     let placement = &atlas.placements[instance];
     if placement.is_empty() {
-        return 0.0;
+        return Extent::default();
     }
-    let layout = &atlas.layouts[scene.instances[instance].mesh];
-    let triangles = layout.indices.chunks_exact(3).map(|t| {
-        let [a, b, c] = [0, 1, 2].map(|k| layout.uvs[t[k] as usize].as_dvec2());
-        (b - a).perp_dot(c - a).abs() * 0.5
-    });
-    let scale = placement.scale.as_dvec2() * atlas.pages[placement.page as usize].as_dvec2();
-    triangles.sum::<f64>() * scale.x * scale.y
+    let place = &scene.instances[instance];
+    let (mesh, layout) = (&scene.meshes[place.mesh], &atlas.layouts[place.mesh]);
+    let page = atlas.pages[placement.page as usize];
+    let corner = |index: u32| place.bake_from_object.transform_vector3(mesh.positions[index as usize].as_dvec3());
+    let of_triangle = |(corners, own): (&[u32], &[u32])| {
+        let [a, b, c] = [0, 1, 2].map(|k| corner(corners[k]));
+        let on_page = [0, 1, 2].map(|k| atlas.texel(instance, layout.uvs[own[k] as usize], page));
+        let [p, q, r] = on_page;
+        let texels = (q - p).perp_dot(r - p).abs() * 0.5;
+        (on_page, Extent { texels, square_m: (b - a).cross(c - a).length() * 0.5 })
+    };
+    let triangles = || mesh.indices.chunks_exact(3).zip(layout.indices.chunks_exact(3)).map(of_triangle);
+    let flat = triangles().filter(|(on_page, _)| !is_drawn_together(on_page)).map(|(_, extent)| extent);
+    let flat = Extent::sum(flat);
+    if flat.texels > 0.0 {
+        return flat;
+    }
+    let cells = |[a, b, c]: [DVec2; 3]| {
+        let low = a.min(b).min(c).floor().as_i64vec2();
+        let high = a.max(b).max(c).floor().as_i64vec2();
+        (low.y..=high.y).flat_map(move |y| (low.x..=high.x).map(move |x| [x, y]))
+    };
+    let texels: HashSet<[i64; 2]> = triangles().flat_map(|(on_page, _)| cells(on_page)).collect();
+    Extent { texels: texels.len() as f64, ..Extent::sum(triangles().map(|(_, extent)| extent)) }
 }
 
 impl Atlas {
     /// Width of each instance's texels, metres; huge where it has none.
     pub fn texel_widths_m(&self, scene: &Scene) -> Vec<f64> {
-        let density = |instance: usize| self.texels_per_metre_of(scene, instance).max(f64::MIN_POSITIVE);
-        (0..scene.instances.len()).into_par_iter().map(|instance| 1.0 / density(instance)).collect()
+        let width_m = |extent: Extent| 1.0 / extent.texels_per_metre().max(f64::MIN_POSITIVE);
+        extents(scene, self).into_iter().map(width_m).collect()
     }
 
     /// Density of an instance's texels: the root of its covered texels over its area. 0 for one without texels.
     pub fn texels_per_metre_of(&self, scene: &Scene, instance: usize) -> f64 {
-        let place = &scene.instances[instance];
-        let mesh = &scene.meshes[place.mesh];
-        let corner = |index: u32| place.bake_from_object.transform_vector3(mesh.positions[index as usize].as_dvec3());
-        let areas = mesh.indices.chunks_exact(3).map(|t| {
-            let [a, b, c] = [0, 1, 2].map(|k| corner(t[k]));
-            (b - a).cross(c - a).length() * 0.5
-        });
-        let square_m: f64 = areas.sum();
-        if square_m > 0.0 { (texels_of_instance(scene, self, instance) / square_m).sqrt() } else { 0.0 }
+        extent(scene, self, instance).texels_per_metre()
     }
 }
 
@@ -77,10 +104,8 @@ pub(super) fn fit_warning(
     atlas: &Atlas,
 ) -> Option<Warning> {
     let Density::TexelsPerMetre(asked) = settings.density else { return None };
-    let reached = |item: &AtlasMesh| {
-        let texels: f64 = item.instances.iter().map(|i| texels_of_instance(scene, atlas, i.index)).sum();
-        (texels / item.area_m2()).sqrt()
-    };
+    let reached =
+        |item: &AtlasMesh| Extent::sum(item.instances.iter().map(|i| extent(scene, atlas, i.index))).texels_per_metre();
     let is_plain = |item: &&AtlasMesh| item.instances.iter().all(|instance| instance.own_density.is_none());
     let reached = items.iter().filter(is_plain).map(|item| (reached(item), item));
     let short: Vec<_> = reached.filter(|(density, _)| *density < 0.9 * asked).collect();

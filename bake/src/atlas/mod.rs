@@ -11,6 +11,7 @@ use glam::{DVec2, DVec3, Vec2};
 mod around;
 mod arrange;
 mod build;
+mod chart_box;
 mod coverage;
 mod error;
 mod existing;
@@ -35,11 +36,13 @@ mod zones;
 
 pub(crate) use around::Around;
 pub use build::build;
+pub(crate) use chart_box::is_drawn_together;
 pub use error::{AtlasError, Misfit};
 pub use footprint::{Filtered, Footprint};
 pub use gutter::{GutterTexel, gutter};
 pub use reach::{HiddenEnd, OPEN, Reach, is_open, wall_code};
 pub use samples::{in_tile_order, sample_page, sample_page_supersampled, surface_point};
+pub(crate) use walls::walls_and_borders;
 pub use walls::{WallFinder, find_walls};
 
 /// Settings for building an atlas.
@@ -90,7 +93,7 @@ pub struct Atlas {
     pub layouts: Vec<Layout>,
     /// Rectangles, one per [`crate::scene::Scene::instances`].
     pub placements: Vec<Placement>,
-    /// Density reached: the root of covered texels over surface area.
+    /// Density reached: the root of covered texels over surface area, without charts that take one texel or a row.
     pub texels_per_metre: f64,
     /// Number of charts over all pages.
     pub chart_count: usize,

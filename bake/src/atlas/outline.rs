@@ -1,7 +1,7 @@
 //! The outline of a chart: the extent of each row and column within its bounding box.
 //!
-//! Practice: the chart is rasterised conservatively into its box. Every row and column keeps the first and last touched
-//! texel, widened by the padding. A row or column that nothing touches counts as full.
+//! Practice: the chart is rasterised into its box: the texels that a filter reads at its points. Every row and column
+//! keeps the first and last of them, widened by the padding. A row or column of which none is read counts as full.
 
 use super::coverage::{self, TexelTriangle};
 
@@ -18,13 +18,13 @@ pub(super) struct Outline {
 const UNTOUCHED: (u16, u16) = (u16::MAX, 0);
 
 impl Outline {
-    /// The outline of triangles given in texels of a box of `width` by `height`.
+    /// The outline of triangles given in texels of a box of `width` by `height`, which holds all that is read.
     pub fn new(triangles: impl Iterator<Item = TexelTriangle>, (width, height): (u32, u32), padding: u32) -> Self {
         let mut columns = vec![UNTOUCHED; width as usize];
         let mut rows = vec![UNTOUCHED; height as usize];
         for corners in triangles {
-            for y in coverage::rows(&corners, height) {
-                let run = coverage::columns(&corners, y, width);
+            for y in coverage::read_rows(&corners, height) {
+                let run = coverage::read_columns(&corners, y, width);
                 widen(&mut rows[y as usize], (run.start as u16, run.end as u16));
                 for column in &mut columns[run.start as usize..run.end as usize] {
                     widen(column, (y as u16, y as u16 + 1));
@@ -74,25 +74,25 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    /// A triangle in the lower left half of a box of 6 by 3 texels.
+    /// A triangle in the lower left half of a box of 6 by 3 texels, between the centres of its outermost ones.
     fn wedge(padding: u32) -> Outline {
-        let corners = [DVec2::ZERO, DVec2::new(5.8, 0.0), DVec2::new(0.0, 2.9)];
+        let corners = [DVec2::splat(0.5), DVec2::new(5.5, 0.5), DVec2::new(0.5, 2.5)];
         Outline::new(std::iter::once(corners), (6, 3), padding)
     }
 
     #[test]
     fn outline_follows_the_shape() {
-        assert_eq!(wedge(0).columns, [(0, 3), (0, 3), (0, 2), (0, 2), (0, 1), (0, 1)]);
-        assert_eq!(wedge(0).rows, [(0, 6), (0, 4), (0, 2)]);
-        assert_eq!(wedge(1).rows, [(0, 8), (0, 8), (0, 8), (0, 6), (0, 4)]);
+        assert_eq!(wedge(0).columns, [(0, 3), (0, 3), (0, 3), (0, 3), (0, 2), (0, 2)]);
+        assert_eq!(wedge(0).rows, [(0, 6), (0, 6), (0, 4)]);
+        assert_eq!(wedge(1).rows, [(0, 8), (0, 8), (0, 8), (0, 8), (0, 6)]);
     }
 
     #[test]
     fn four_quarter_turns_are_none() {
         let wedge = wedge(0);
-        assert_eq!(wedge.columns(1), [(0, 2), (0, 4), (0, 6)]);
-        assert_eq!(wedge.columns(2), [(2, 3), (2, 3), (1, 3), (1, 3), (0, 3), (0, 3)]);
-        assert_eq!(wedge.columns(3), [(0, 6), (2, 6), (4, 6)]);
+        assert_eq!(wedge.columns(1), [(0, 4), (0, 6), (0, 6)]);
+        assert_eq!(wedge.columns(2), [(1, 3), (1, 3), (0, 3), (0, 3), (0, 3), (0, 3)]);
+        assert_eq!(wedge.columns(3), [(0, 6), (0, 6), (2, 6)]);
         assert_eq!(wedge.columns(4), wedge.columns(0));
     }
 }

@@ -21,6 +21,7 @@ use super::{Atlas, PageSamples, PageSize, Sample, SurfacePoint};
 use crate::scene::{Geometry, Scene};
 use glam::DVec2;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// How far a point that is not the texel's centre moves into its triangle, as a share of the way to the part's middle.
 const PULL_OFF_CENTRE: f64 = 0.25;
@@ -38,8 +39,8 @@ const NO_AREA_PENALTY: f64 = 4.0;
 const NO_AREA_TEXELS: f64 = 1e-12;
 
 /// A triangle on the page, in texels.
-struct PageTriangle {
-    corners: TexelTriangle,
+pub(super) struct PageTriangle {
+    pub corners: TexelTriangle,
     /// Twice the signed area, in texels.
     area2: f64,
     triangle: u32,
@@ -106,10 +107,8 @@ pub fn sample_page_supersampled(
         return PageSamples::default();
     };
     let size = PageSize { width: width * factor, height: height * factor };
-    let page_triangles = triangles_of_page(scene, geometry, atlas, page, size);
-    let bands = bands(&page_triangles, size);
-    let samples =
-        bands.par_iter().enumerate().map(|(band, members)| sample_band(&page_triangles, members, band as u32, size));
+    let bands = Bands::of_covered(scene, geometry, atlas, page, size);
+    let samples = bands.rows(size).into_par_iter().map(|(members, rows)| sample_band(&bands, members, rows, size));
     PageSamples { samples: samples.collect::<Vec<_>>().concat() }
 }
 
@@ -156,20 +155,44 @@ fn triangles_of_page(
     placed.into_par_iter().flat_map_iter(of_instance).collect()
 }
 
-/// For each band of rows, the patches that touch it.
-fn bands(page_triangles: &[PageTriangle], size: PageSize) -> Vec<Vec<u32>> {
-    let mut bands = vec![Vec::new(); size.height.div_ceil(BAND_ROWS) as usize];
-    for (index, page_triangle) in page_triangles.iter().enumerate() {
-        let rows = coverage::rows(&page_triangle.corners, size.height);
-        for band in rows.start / BAND_ROWS..=(rows.end - 1) / BAND_ROWS {
-            bands[band as usize].push(index as u32);
-        }
-    }
-    bands
+/// The triangles of a page, by bands of rows.
+pub(super) struct Bands {
+    pub triangles: Vec<PageTriangle>,
+    /// For each band, those that touch it.
+    members: Vec<Vec<u32>>,
 }
 
-fn sample_band(page_triangles: &[PageTriangle], members: &[u32], band: u32, size: PageSize) -> Vec<Sample> {
-    let rows = band * BAND_ROWS..((band + 1) * BAND_ROWS).min(size.height);
+impl Bands {
+    /// Those of the rows that a triangle covers.
+    fn of_covered(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, size: PageSize) -> Self {
+        Self::new(triangles_of_page(scene, geometry, atlas, page, size), size, coverage::rows)
+    }
+
+    /// Those of the rows that a filter reads at a triangle's points.
+    pub fn of_read(scene: &Scene, geometry: &Geometry, atlas: &Atlas, page: u32, size: PageSize) -> Self {
+        Self::new(triangles_of_page(scene, geometry, atlas, page, size), size, coverage::read_rows)
+    }
+
+    fn new(triangles: Vec<PageTriangle>, size: PageSize, rows: impl Fn(&TexelTriangle, u32) -> Range<u32>) -> Self {
+        let mut members = vec![Vec::new(); size.height.div_ceil(BAND_ROWS) as usize];
+        for (triangle, index) in triangles.iter().zip(0..) {
+            let rows = rows(&triangle.corners, size.height);
+            for band in rows.start / BAND_ROWS..rows.end.div_ceil(BAND_ROWS) {
+                members[band as usize].push(index);
+            }
+        }
+        Self { triangles, members }
+    }
+
+    /// For each band, its triangles and its rows.
+    pub fn rows(&self, size: PageSize) -> Vec<(&Vec<u32>, Range<u32>)> {
+        let rows = |band: u32| band * BAND_ROWS..((band + 1) * BAND_ROWS).min(size.height);
+        self.members.iter().zip((0..).map(rows)).collect()
+    }
+}
+
+fn sample_band(bands: &Bands, members: &[u32], rows: Range<u32>, size: PageSize) -> Vec<Sample> {
+    let page_triangles = &bands.triangles;
     let mut best = vec![(f32::INFINITY, 0u32); (rows.len()) * size.width as usize];
     for &member in members {
         let page_triangle = &page_triangles[member as usize];
@@ -229,7 +252,7 @@ fn middle(polygon: &[DVec2]) -> DVec2 {
 }
 
 /// The point of a polygon's border nearest to `p`; the first of equally near ones.
-fn nearest_on(polygon: &[DVec2], p: DVec2) -> DVec2 {
+pub(super) fn nearest_on(polygon: &[DVec2], p: DVec2) -> DVec2 {
     let on_edge = |k: usize| {
         let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
         let along = (p - a).dot(b - a) / (b - a).length_squared().max(f64::MIN_POSITIVE);

@@ -12,6 +12,9 @@
 use super::free_space::FreeSpace;
 use super::outline::Outline;
 
+/// Narrower gaps are not kept, whatever would fit: there are too many of them.
+const LEAST_GAP_TEXELS: u32 = 4;
+
 /// A shape to pack, in texels.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PackShape {
@@ -127,7 +130,8 @@ pub(super) fn pack(shapes: &[PackShape], width: u32, height: u32) -> Option<Pack
         (std::cmp::Reverse((shape.width.max(shape.height), shape.width.min(shape.height))), i)
     });
     let mut skyline = vec![0; width as usize];
-    let mut gaps = FreeSpace::new(shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1));
+    let least = shapes.iter().map(|s| s.width.min(s.height)).min().unwrap_or(1);
+    let mut gaps = FreeSpace::new(least.max(LEAST_GAP_TEXELS));
     let mut packed = Packed { positions: vec![PackedPosition::default(); shapes.len()], ..Packed::default() };
     for index in order {
         let PackShape { width: across, height: along, may_turn, .. } = shapes[index];

@@ -25,9 +25,7 @@ pub fn find_walls(
     samples: &PageSamples,
     gutter: &[GutterTexel],
 ) -> Option<Vec<[u8; 2]>> {
-    let mut sources = vec![NO_SAMPLE; size.texel_count()];
-    samples.samples.iter().zip(0..).for_each(|(sample, index)| sources[sample.texel as usize] = index);
-    gutter.iter().for_each(|copy| sources[copy.texel as usize] = copy.sample);
+    let sources = sources(size, samples, gutter);
     let width = size.width as usize;
     let code = |a: u32, b: u32| match a == b || a == NO_SAMPLE || b == NO_SAMPLE {
         true => OPEN,
@@ -63,6 +61,44 @@ pub fn find_walls(
     }
     Some(codes)
 }
+
+/// For each texel of a page, the sample that it shows, or [`NO_SAMPLE`].
+fn sources(size: PageSize, samples: &PageSamples, gutter: &[GutterTexel]) -> Vec<u32> {
+    let mut sources = vec![NO_SAMPLE; size.texel_count()];
+    samples.samples.iter().zip(0..).for_each(|(sample, index)| sources[sample.texel as usize] = index);
+    gutter.iter().for_each(|copy| sources[copy.texel as usize] = copy.sample);
+    sources
+}
+
+/// A page's walls, if it has any, and more of them where a covered texel lies beside one of another chart, as without a
+/// gutter between them. No filter reads such a neighbour; what looks around a texel in other ways must not either.
+/// `None` if that leaves no wall.
+pub(crate) fn walls_and_borders(
+    finder: &WallFinder,
+    size: PageSize,
+    samples: &PageSamples,
+    gutter: &[GutterTexel],
+    walls: Option<&[[u8; 2]]>,
+) -> Option<Vec<[u8; 2]>> {
+    let sources = sources(size, samples, gutter);
+    let width = size.width as usize;
+    let sample = |texel: usize| Some(&samples.samples[*sources.get(texel).filter(|&&s| s != NO_SAMPLE)? as usize]);
+    let is_border = |texel: usize, other: usize| {
+        let (Some(a), Some(b)) = (sample(texel), sample(other)) else { return false };
+        let is_covered = a.texel as usize == texel || b.texel as usize == other;
+        is_covered && a.triangle != b.triangle && finder.chart(a.triangle) != finder.chart(b.triangle)
+    };
+    let of_texel = |texel: usize| {
+        let own = walls.map_or([OPEN; 2], |codes| codes[texel]);
+        let is_border = [texel % width + 1 < width && is_border(texel, texel + 1), is_border(texel, texel + width)];
+        [0, 1].map(|way| if is_border[way] { BORDER } else { own[way] })
+    };
+    let codes: Vec<[u8; 2]> = (0..sources.len()).into_par_iter().with_min_len(4096).map(of_texel).collect();
+    codes.iter().any(|codes| *codes != [OPEN; 2]).then_some(codes)
+}
+
+/// A wall at the first of two texels.
+const BORDER: u8 = 0;
 
 /// The shape of the walls within a footprint, best first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -43,7 +43,7 @@ impl PageBaker<'_> {
         &mut self,
         job: &AmbientJob,
         page: usize,
-        PageTexels { samples, order, gutter, .. }: PageTexels,
+        PageTexels { samples, order, gutter, borders, .. }: PageTexels,
     ) -> Result<AmbientPage, BakeError> {
         let (scene, geometry, atlas, progress) = (self.scene, self.geometry, self.atlas, self.progress);
         let size = atlas.pages[page];
@@ -70,7 +70,7 @@ impl PageBaker<'_> {
         account.unconverged_texels += runs.iter().map(|run| run.unconverged).sum::<u64>();
         account.rays += runs.iter().map(|run| run.rays).sum::<u64>();
         account.buried_texels += runs.iter().flat_map(|run| &run.buried).filter(|&&is_buried| is_buried).count() as u64;
-        let mut baked = AmbientPage::new(size, samples, order, &runs, job.engine.settings());
+        let mut baked = AmbientPage::new(size, samples, order, borders, &runs, job.engine.settings());
         drop(runs);
         baked.fill(gutter, samples);
         let seams = Seams::find(scene, geometry, job.normals, atlas, page as u32, samples);

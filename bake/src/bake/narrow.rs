@@ -1,6 +1,6 @@
 //! Objects that are too small for their texels.
 
-use crate::atlas::Atlas;
+use crate::atlas::{Atlas, is_drawn_together};
 use crate::scene::{Instance, Scene, each_once, label_of};
 use crate::warning::Warning;
 use glam::DVec3;
@@ -85,9 +85,14 @@ impl<'a> TexelWidths<'a> {
             if !(a.min(b).min(c).cmple(high).all() && a.max(b).max(c).cmpge(low).all()) {
                 return 0.0;
             }
-            let [p, q, r] = [0, 1, 2].map(|k| self.atlas.texel(instance, layout.uvs[own[k] as usize], page));
+            let on_page = [0, 1, 2].map(|k| self.atlas.texel(instance, layout.uvs[own[k] as usize], page));
+            let [p, q, r] = on_page;
             let texels = (q - p).perp_dot(r - p).abs();
-            if texels > 0.0 { ((b - a).cross(c - a).length() / texels).sqrt() } else { 0.0 }
+            if texels > 0.0 && !is_drawn_together(&on_page) {
+                ((b - a).cross(c - a).length() / texels).sqrt()
+            } else {
+                0.0
+            }
         };
         mesh.indices.chunks_exact(3).zip(layout.indices.chunks_exact(3)).map(width_m).fold(0.0, f64::max)
     }

@@ -28,8 +28,10 @@ pub(super) struct PageTexels<'a> {
     pub order: &'a [u32],
     /// Those that copy them.
     pub gutter: &'a [GutterTexel],
-    /// What stands between them.
+    /// What stands between them: walls, and borders of charts.
     pub walls: Option<&'a [[u8; 2]]>,
+    /// Borders of charts alone.
+    pub borders: Option<&'a [[u8; 2]]>,
 }
 
 /// Bakes pages, and keeps the statistics.
@@ -113,10 +115,21 @@ impl<'a> PageBaker<'a> {
         self.stats.page_texels += u64::from(size.width) * u64::from(size.height);
         self.loss_map = self.settings.loss_map.then(|| LossMap::new(size.width, size.height));
         let order = atlas::in_tile_order(&samples, size);
-        let gutter = atlas::gutter(size, &samples, self.settings.padding_texels);
+        let padding = self.settings.padding_texels;
+        let gutter = timed(&mut self.stats.seconds.unwrap, || {
+            atlas::gutter(self.scene, self.geometry, self.atlas, index as u32, &samples, padding)
+        });
         let finder = &self.walls;
         let walls = timed(&mut self.stats.seconds.unwrap, || atlas::find_walls(finder, size, &samples, &gutter));
-        let texels = PageTexels { samples: &samples, order: &order, gutter: &gutter, walls: walls.as_deref() };
+        let beside = |walls| atlas::walls_and_borders(finder, size, &samples, &gutter, walls);
+        let (parted, borders) = timed(&mut self.stats.seconds.unwrap, || (beside(walls.as_deref()), beside(None)));
+        let texels = PageTexels {
+            samples: &samples,
+            order: &order,
+            gutter: &gutter,
+            walls: parted.as_deref(),
+            borders: borders.as_deref(),
+        };
         let Lights { sun, lamp, .. } = self.lights;
         let mut account = std::mem::take(&mut self.sun);
         let sun = sun.map(|sun| self.bake_light(index, &sun, &mut account, texels)).transpose()?;
@@ -194,7 +207,7 @@ impl<'a> PageBaker<'a> {
         page_texels: PageTexels,
         solved: &Solved,
     ) -> (Vec<LaneMaps>, Option<PageTracks>) {
-        let PageTexels { samples, order, gutter, walls } = page_texels;
+        let PageTexels { samples, order, gutter, walls, .. } = page_texels;
         let PageSamples { samples: texels } = samples;
         self.progress.start(BakeStep::Encode, texels.len() as u64);
         let started = Instant::now();

@@ -65,12 +65,13 @@ impl SparseTexels {
         let mut read = Self { samples: Vec::new(), blends: vec![Footprint::default(); of_pages.len()], texels: 0 };
         // Texels that are not covered, until it is known how many are.
         const UNCOVERED: usize = usize::MAX;
-        for (page, &size) in atlas.pages.iter().enumerate() {
+        for page in 0..atlas.pages.len() {
             let samples = atlas::sample_page(scene, geometry, atlas, page as u32);
             read.texels += samples.samples.len() as u64;
             let on_page = of_pages.iter().enumerate().filter(|(_, (of, _))| *of == page);
             let texels = on_page.clone().flat_map(|(_, (_, blend))| blend.texels);
-            let found = read.add(&texels.collect(), &samples, &atlas::gutter(size, &samples, padding));
+            let gutter = atlas::gutter(scene, geometry, atlas, page as u32, &samples, padding);
+            let found = read.add(&texels.collect(), &samples, &gutter);
             for (point, (_, blend)) in on_page {
                 let texels = blend.texels.map(|texel| *found.get(&texel).unwrap_or(&UNCOVERED));
                 let codes = finder.codes(texels.map(|texel| read.samples.get(texel)));

@@ -1,11 +1,14 @@
 //! What must hold of every atlas, checked by brute force that shares no code with what it checks.
 
-use crate::atlas::{Atlas, AtlasSettings, PageSamples, build, gutter, sample_page, surface_point};
+use crate::atlas::{Atlas, AtlasSettings, LayoutOrigin, PageSamples, build, gutter, sample_page, surface_point};
 use crate::scene::{Geometry, Scene};
 use glam::DVec2;
+use std::collections::HashMap;
 
 /// Part of a texel that a triangle may take without having to own it.
 const HAIR: f64 = 0.02;
+/// Weight in a filter that a texel may have without being of the triangle's chart.
+const LEAST_WEIGHT: f64 = 1.0 / 200.0;
 
 /// An atlas with its samples and gutters, and which sample each texel reads.
 pub struct CheckedAtlas {
@@ -24,17 +27,17 @@ pub fn bake(scene: &Scene, settings: &AtlasSettings) -> CheckedAtlas {
     let atlas = build(scene, settings, &|_| true).expect("the atlas fits");
     let geometry = Geometry::new(scene);
     let pages: Vec<_> = (0..atlas.pages.len()).map(|page| sample_page(scene, &geometry, &atlas, page as u32)).collect();
-    let show = |(samples, &size): (&PageSamples, &crate::atlas::PageSize)| {
-        let mut shown = vec![None; size.texel_count()];
+    let show = |(page, samples): (usize, &PageSamples)| {
+        let mut shown = vec![None; atlas.pages[page].texel_count()];
         for (index, sample) in samples.samples.iter().enumerate() {
             shown[sample.texel as usize] = Some(index as u32);
         }
-        for copy in gutter(size, samples, settings.padding_texels) {
+        for copy in gutter(scene, &geometry, &atlas, page as u32, samples, settings.padding_texels) {
             assert_eq!(shown[copy.texel as usize].replace(copy.sample), None, "a gutter texel is covered");
         }
         shown
     };
-    let shown = pages.iter().zip(&atlas.pages).map(show).collect();
+    let shown = pages.iter().enumerate().map(show).collect();
     CheckedAtlas { atlas, geometry, pages, shown }
 }
 
@@ -68,7 +71,7 @@ impl CheckedAtlas {
     }
 
     fn samples_lie_on_their_triangles(&self, scene: &Scene) {
-        let by_triangle: std::collections::HashMap<u32, [DVec2; 3]> =
+        let by_triangle: HashMap<u32, [DVec2; 3]> =
             self.triangles(scene).map(|(_, _, flat, corners)| (flat, corners)).collect();
         for (page, samples) in self.pages.iter().enumerate() {
             assert!(samples.samples.windows(2).all(|w| w[0].texel < w[1].texel), "samples are not in order");
@@ -101,14 +104,20 @@ impl CheckedAtlas {
         }
     }
 
-    /// At its middle and close to its corners, a filter of two by two texels reads only its own instance.
+    /// At its middle and close to its corners, a filter of two by two texels reads only its own instance, and of what
+    /// was unwrapped only its own chart.
     fn every_triangle_reads_its_own_instance(&self, scene: &Scene) {
+        let chart = self.charts(scene);
         for (page, instance, flat, corners) in self.triangles(scene) {
             let size = self.atlas.pages[page];
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             for point in corners.iter().map(|c| c.lerp(middle, 0.01)).chain([middle]) {
                 let low = (point - 0.5).floor();
                 for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                    let away = (point - 0.5 - low - DVec2::new(dx, dy)).abs();
+                    if (1.0 - away.x) * (1.0 - away.y) < LEAST_WEIGHT {
+                        continue;
+                    }
                     let x = (low.x + dx).clamp(0.0, f64::from(size.width) - 1.0) as u32;
                     let y = (low.y + dy).clamp(0.0, f64::from(size.height) - 1.0) as u32;
                     let shown = self.shown[page][(y * size.width + x) as usize];
@@ -118,9 +127,45 @@ impl CheckedAtlas {
                     let read = self.pages[page].samples[sample as usize].triangle;
                     let of = self.geometry.instance[read as usize] as usize;
                     assert_eq!(of, instance, "triangle {flat} reads another instance at ({x}, {y})");
+                    let [own, other] = [chart[flat as usize], chart[read as usize]];
+                    assert_eq!(own, other, "triangle {flat} of chart {own} reads {read} at ({x}, {y}), {corners:?}");
                 }
             }
         }
+    }
+}
+
+impl CheckedAtlas {
+    /// A number for each triangle's chart: triangles that meet in a place of the layout are of one. Layouts of a file
+    /// count as one chart.
+    fn charts(&self, scene: &Scene) -> Vec<usize> {
+        let mut charts = Vec::new();
+        for instance in 0..scene.instances.len() {
+            let layout = &self.atlas.layouts[scene.instances[instance].mesh];
+            let is_file = layout.origin == LayoutOrigin::File;
+            let triangles = layout.indices.as_chunks::<3>().0;
+            let place =
+                |v: u32| if is_file { [0; 2] } else { layout.uvs[v as usize].to_array().map(|x| (x + 0.0).to_bits()) };
+            let first = charts.len();
+            charts.extend(first..first + triangles.len());
+            // Each triangle takes the least number of those that it meets, until nothing changes.
+            loop {
+                let mut least: HashMap<[u32; 2], usize> = HashMap::new();
+                for (corners, &number) in triangles.iter().zip(&charts[first..]) {
+                    for corner in corners {
+                        least.entry(place(*corner)).and_modify(|known| *known = number.min(*known)).or_insert(number);
+                    }
+                }
+                let new: Vec<usize> =
+                    triangles.iter().map(|t| t.iter().map(|c| least[&place(*c)]).min().unwrap_or(first)).collect();
+                let has_changed = new != charts[first..];
+                charts[first..].copy_from_slice(&new);
+                if !has_changed {
+                    break;
+                }
+            }
+        }
+        charts
     }
 }
 

@@ -157,9 +157,9 @@ fn settings_out_of_range_are_refused() {
     let dense = build(&village(), &settings(Density::TexelsPerMetre(1e6), 4096), &|_| true);
     assert!(matches!(dense, Err(AtlasError::TooDense { .. })));
     let crowd: Vec<_> =
-        (0..4000).map(|i| [Vec3::X, Vec3::Y, Vec3::Z].map(|p| p + Vec3::splat(2.0 * i as f32))).collect();
+        (0..5000).map(|i| [Vec3::X, Vec3::Y, Vec3::Z].map(|p| p + Vec3::splat(2.0 * i as f32))).collect();
     let small = build(&scene(vec![(triangles(&crowd), once())]), &settings(Density::Pages(1), 64), &|_| true);
-    let crowded = Misfit::Charts { instance: 0, charts: 4000 };
+    let crowded = Misfit::Charts { instance: 0, charts: 5000 };
     assert!(matches!(small, Err(AtlasError::PageTooSmall { misfit, .. }) if misfit == crowded), "{small:?}");
     let mut dense = village();
     dense.instances[1].role.texels_per_metre = Some(1000.0);

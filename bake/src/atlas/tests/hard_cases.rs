@@ -1,10 +1,11 @@
-//! The hard cases of baking that the atlas decides: B3, B4, B7, B9, B11, B12, B16.
+//! The hard cases of baking that the atlas decides: B3, B4, B7, B9, B11, B12, B16, B22.
 
 use super::scenes::{cuboid, hills, lit_quad, mesh, once, scene, sphere, triangles};
 use crate::atlas::{AtlasSettings, Density, LayoutOrigin, surface_point};
 use crate::scene::{Mesh, Scene};
 use crate::testing::atlas::{CheckedAtlas, bake, bake_and_check};
 use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
+use std::collections::HashSet;
 
 fn settings(page_size_texels: u32) -> AtlasSettings {
     AtlasSettings { density: Density::Pages(1), page_size_texels, ..AtlasSettings::default() }
@@ -40,6 +41,7 @@ fn b4_scale_of_a_node_or_of_vertices_changes_nothing() {
         ])
     };
     let plain = bake_and_check(&parts(1.0, 1.0), &settings(256));
+    let large = bake_and_check(&parts(1.0, 1.0), &settings(1024));
     for factor in [1e-4, 1e4] {
         let by_node = bake(&parts(1.0, factor), &settings(256));
         assert_eq!(
@@ -48,11 +50,12 @@ fn b4_scale_of_a_node_or_of_vertices_changes_nothing() {
             "node scaled by {factor}"
         );
         assert_eq!(by_node.pages[0].samples, plain.pages[0].samples, "node scaled by {factor}");
-        let by_vertex = bake_and_check(&parts(factor as f32, 1.0), &settings(256));
+        // Charts are rounded to whole texels, which matters less the more they have.
+        let by_vertex = bake_and_check(&parts(factor as f32, 1.0), &settings(1024));
         // Vertices times 10,000 are rounded, so a sphere, all ties, may be cut elsewhere.
-        let charts = by_vertex.atlas.chart_count.abs_diff(plain.atlas.chart_count);
+        let charts = by_vertex.atlas.chart_count.abs_diff(large.atlas.chart_count);
         assert!(charts <= 2, "{charts} charts more or less, vertices scaled by {factor}");
-        let ratio = by_vertex.atlas.texels_per_metre * factor / plain.atlas.texels_per_metre;
+        let ratio = by_vertex.atlas.texels_per_metre * factor / large.atlas.texels_per_metre;
         assert!((ratio - 1.0).abs() < 0.03, "density is off by {ratio}, vertices scaled by {factor}");
     }
 }
@@ -151,4 +154,64 @@ fn b16_coordinates_that_cannot_be_used_are_replaced() {
 
 fn origin_of(scene: &Scene) -> LayoutOrigin {
     bake_and_check(scene, &settings(128)).atlas.layouts[0].origin
+}
+
+/// Triangles that lie apart from each other, each in a cube of this edge.
+fn loose(count: usize, edge: f32) -> Mesh {
+    let across = (count as f32).cbrt().ceil() as usize;
+    let corner = |i: usize| {
+        let at = [i % across, i / across % across, i / across / across].map(|k| 3.0 * edge * k as f32);
+        [Vec3::ZERO, Vec3::X * edge, Vec3::Y * edge].map(|p| p + Vec3::from(at))
+    };
+    triangles(&(0..count).map(corner).collect::<Vec<_>>())
+}
+
+#[test]
+fn b22_a_chart_within_a_texel_takes_one_and_a_narrow_one_a_row() {
+    let planks: Vec<[Vec3; 3]> = (0..60)
+        .map(|i| [Vec3::ZERO, Vec3::X * 20.0, Vec3::new(20.0, 0.0, 0.01)].map(|p| p + Vec3::Y * i as f32))
+        .collect();
+    let specks = || loose(400, 0.02);
+    let scene = scene(vec![(specks(), once()), (triangles(&planks), once()), (hills(20, 0.2), once())]);
+    let baked = bake_and_check(&scene, &settings(256));
+    let mut texels = [0usize; 3];
+    for sample in &baked.pages[0].samples {
+        texels[baked.geometry.instance[sample.triangle as usize] as usize] += 1;
+    }
+    let density = baked.atlas.texels_per_metre_of(&scene, 2);
+    assert!(density > 8.0, "{density}");
+    assert_eq!(texels[0], 400);
+    let row = (20.0 * density).round() as usize + 1;
+    assert!((texels[1] / 60).abs_diff(row) <= 1, "{} texels a plank of {row}", texels[1] / 60);
+}
+
+#[test]
+fn b22_a_speck_drawn_three_thousand_times_takes_as_many_texels() {
+    let matrices = (0..3000).map(|i| DMat4::from_translation(DVec3::X * f64::from(i) * 0.01)).collect();
+    let scene = scene(vec![(loose(1, 0.003), matrices), (hills(30, 0.1), once())]);
+    let baked = bake_and_check(&scene, &settings(256));
+    let of_specks = |sample: &&crate::atlas::Sample| baked.geometry.instance[sample.triangle as usize] < 3000;
+    assert_eq!(baked.pages[0].samples.iter().filter(of_specks).count(), 3000);
+    let density = baked.atlas.texels_per_metre_of(&scene, 3000);
+    assert!(density > 6.5, "the ground has {density} texels a metre, of 7.9 if it were alone");
+}
+
+#[test]
+fn b22_fifty_thousand_loose_triangles_fit_a_page_of_256() {
+    let scene = scene(vec![(loose(50_000, 0.01), once())]);
+    let baked = bake(&scene, &settings(256));
+    let seen: HashSet<u32> = baked.pages[0].samples.iter().map(|sample| sample.triangle).collect();
+    assert_eq!((baked.atlas.pages.len(), baked.atlas.chart_count, seen.len()), (1, 50_000, 50_000));
+}
+
+/// Twice the edge of a page gives close to twice the density, although four thousand charts are smaller than a texel:
+/// with gutters they would take more than all of the smallest page.
+#[test]
+fn b22_densities_are_a_ladder() {
+    let scene = scene(vec![(loose(4000, 0.05), once()), (hills(12, 0.3), once()), (sphere(20), once())]);
+    let density = |edge: u32| bake(&scene, &settings(edge)).atlas.texels_per_metre_of(&scene, 1);
+    let [small, middle, large] = [256, 512, 1024].map(density);
+    for ratio in [middle / small, large / middle] {
+        assert!((1.85..2.3).contains(&ratio), "{small} {middle} {large}");
+    }
 }
