@@ -183,7 +183,7 @@ pub(super) fn chart_shapes(
         match (content.gutter, content.cells) {
             (0, (1, 1)) => points.push(boxed),
             (0, (width, height)) if width.min(height) == 1 => {
-                rows.push(BoxedChart { turns: u8::from(height > width), ..boxed })
+                rows.push(BoxedChart { turns: u8::from(height > width), ..boxed });
             }
             _ => shapes.push(ChartShape { shape: content.shape(charts, chart), charts: vec![boxed] }),
         }
