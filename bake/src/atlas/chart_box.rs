@@ -152,7 +152,7 @@ pub(super) struct BoxedChart {
 }
 
 impl BoxedChart {
-    /// None.
+    /// A chart that has no place yet.
     pub const EMPTY: Self = Self { chart: 0, content: ChartBox::EMPTY, at: (0, 0), turns: 0 };
 
     /// Position in texels of a point of the chart, from the corner of its shape, which is turned by some quarters.

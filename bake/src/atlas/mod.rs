@@ -52,9 +52,9 @@ pub struct AtlasSettings {
     pub density: Density,
     /// Longest side of a page, in texels; 16 to 16384, usually 1024 to 4096. Pages are cropped to what is used.
     pub page_size_texels: u32,
-    /// Width in texels of the gutter on every side of every chart, so that charts are twice this apart. A bilinear
-    /// filter needs 1; the default is 2; each mip level needs twice as much. It costs most in atlases of many small
-    /// charts.
+    /// Width in texels of the gutter on every side of large charts, from where they end. A bilinear filter needs 1, as
+    /// all charts have; the default is 2; each mip level needs twice as much. No gutter is wider than an eighth of its
+    /// chart's shorter side.
     pub padding_texels: u32,
     /// Most texels over all pages; a density that needs more is an error. A sample takes 16 bytes, so the default of
     /// 2^28 bounds all samples of a scene at 4 GiB.
